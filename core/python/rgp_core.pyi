@@ -1,0 +1,103 @@
+"""Native core of RGP Engine. World space, metres, watts; see the renderer's `scene/record.rs` for every record."""
+
+from typing import Any, final
+
+import numpy as np
+import numpy.typing as npt
+
+__version__: str
+
+class RenderError(Exception):
+    """A render that cannot be made; the message is for the artist."""
+
+class SceneError(RenderError):
+    """A scene that cannot be rendered: no camera, nothing in it, a record that does not make sense."""
+
+class SettingsError(RenderError, ValueError):
+    """An unknown setting or a value out of range; the message lists what exists."""
+
+class EmbreeError(RenderError):
+    """The Embree library is missing, of another version, or failed."""
+
+def settings_schema() -> list[dict[str, Any]]:
+    """Every setting: {group, name, type ("int" | "float" | "bool" | "enum" | "bins"), default, minimum, maximum,
+    choices, unit, description}. Fields that do not apply are None."""
+
+def check_settings(settings: dict[str, dict[str, Any]]) -> None:
+    """Raises SettingsError when a group, a name or a value is not allowed."""
+
+def embree_version(embree_library: str) -> str:
+    """Version of the Embree library at that path, such as "4.4.0". Raises EmbreeError."""
+
+@final
+class SceneBuilder:
+    """Takes the parts of a scene in any order; `finish` checks them once. Methods return the part's index."""
+
+    def __new__(cls) -> SceneBuilder: ...
+    def add_material(self, record: dict[str, Any]) -> int:
+        """`{"name", "closures": [{"weight": [r, g, b], "closure": {"kind": ..., ...}}]}`."""
+
+    def add_mesh(
+        self,
+        name: str,
+        positions: npt.NDArray[np.float32],
+        triangles: npt.NDArray[np.uint32],
+        corner_normals: npt.NDArray[np.float32] | None = None,
+        corner_uvs: npt.NDArray[np.float32] | None = None,
+        slots: npt.NDArray[np.uint16] | None = None,
+    ) -> int:
+        """positions (V, 3); triangles (T, 3); corner_normals (T, 3, 3), None for flat shading; corner_uvs (T, 3, 2);
+        slots (T,). Wrong shapes raise SceneError; bad values are dropped and reported as problems."""
+
+    def add_object(
+        self,
+        name: str,
+        mesh: int,
+        world_from_object: npt.NDArray[np.float64],
+        materials: list[int],
+        visibility: int,
+    ) -> int:
+        """world_from_object (4, 4), as Blender's matrix_world; `materials` one per slot (empty: Blender's default grey)."""
+
+    def add_lamp(self, record: dict[str, Any]) -> int: ...
+    def set_camera(self, record: dict[str, Any]) -> None: ...
+    def set_world(self, record: dict[str, Any]) -> None: ...
+    def finish(self) -> Scene:
+        """Checks everything and moves it out; the builder is empty afterwards. Raises SceneError."""
+
+@final
+class Scene:
+    """A checked scene. Immutable; can be rendered any number of times."""
+
+    @property
+    def problems(self) -> list[dict[str, Any]]:
+        """[{"subject", "message", "count"}]."""
+
+    @property
+    def triangle_count(self) -> int:
+        """Triangles that are traced, instances counted once per object."""
+
+@final
+class Session:
+    """One render, on threads of its own. Nothing here holds the GIL while it waits."""
+
+    def __new__(cls, scene: Scene, settings: dict[str, dict[str, Any]], embree_library: str) -> Session: ...
+    def start(self) -> None: ...
+    def cancel(self) -> None:
+        """Asks the render to stop; returns at once. What is finished stays readable."""
+
+    def wait(self, timeout_seconds: float) -> bool:
+        """True once the render has ended: finished, cancelled or failed."""
+
+    def progress(self) -> dict[str, Any]:
+        """{"stage", "fraction", "passes_done", "passes_total", "seconds_elapsed", "seconds_left", "memory_bytes"};
+        seconds_left is None while unknown."""
+
+    def picture(self, layer: str) -> npt.NDArray[np.float32]:
+        """Mean of the passes so far, rows from the bottom: "combined" (H, W, 4), "indirect" (H, W, 3)."""
+
+    def stats(self) -> dict[str, Any]:
+        """The stats file's content, less what only the host knows (seconds.export, versions of Blender)."""
+
+    def finish(self) -> bool:
+        """Joins the render. True when it ran to its end, False when it was cancelled; raises RenderError when it failed."""

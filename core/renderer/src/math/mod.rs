@@ -1,0 +1,35 @@
+//! Orthonormal frames and the offset of ray origins. Vectors are glam's.
+
+use glam::Vec3;
+
+/// A right-handed orthonormal frame about a unit normal.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    /// First tangent.
+    pub tangent: Vec3,
+    /// Second tangent.
+    pub bitangent: Vec3,
+    /// The normal the frame is built on.
+    pub normal: Vec3,
+}
+
+impl Frame {
+    /// Frame about the unit vector `normal` (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+    #[must_use]
+    pub fn new(normal: Vec3) -> Self {
+        let (tangent, bitangent) = normal.any_orthonormal_pair();
+        Self { tangent, bitangent, normal }
+    }
+
+    /// Local coordinates (z along the normal) to the space the frame lives in.
+    #[must_use]
+    pub fn from_local(&self, v: Vec3) -> Vec3 {
+        self.tangent * v.x + self.bitangent * v.y + self.normal * v.z
+    }
+
+    /// The inverse of [`Frame::from_local`].
+    #[must_use]
+    pub fn to_local(&self, v: Vec3) -> Vec3 {
+        Vec3::new(v.dot(self.tangent), v.dot(self.bitangent), v.dot(self.normal))
+    }
+}

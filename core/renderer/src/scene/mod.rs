@@ -1,0 +1,190 @@
+//! The scene as plain data: arrays of meshes, objects, materials and lamps that refer to each other by index.
+//!
+//! Everything is in *scene space*: the world recentred on its bounding box and scaled by a power of two to the unit
+//! cube, computed in f64 before anything becomes f32. Radiance and irradiance keep their value; a lamp's power is scaled
+//! by the square of the length scale, so that power over squared distance still is irradiance in W·m⁻².
+
+mod builder;
+pub mod record;
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3, Vec3};
+
+pub use builder::{MeshArrays, SceneBuilder};
+pub use record::{LampShape, Projection, visibility};
+
+use crate::color::Rgb;
+use record::WeightedClosure;
+
+/// Where scene space lies in the world: `p_scene = (p_world - center) * scale`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneSpace {
+    /// World position of the scene's origin (m).
+    pub center: DVec3,
+    /// Scene units per metre, a power of two.
+    pub scale: f64,
+}
+
+impl SceneSpace {
+    /// World to scene as a transform.
+    #[must_use]
+    pub fn scene_from_world(&self) -> DAffine3 {
+        DAffine3::from_scale(DVec3::splat(self.scale)) * DAffine3::from_translation(-self.center)
+    }
+}
+
+/// Triangles of one evaluated mesh, in the space of whoever owns them (scene space, or an instance's own).
+#[derive(Debug, Default)]
+pub struct Mesh {
+    /// Vertex positions.
+    pub positions: Vec<Vec3>,
+    /// Vertex indices, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Shading normal at each corner of each triangle; empty means flat.
+    pub corner_normals: Vec<[Vec3; 3]>,
+    /// Texture coordinates at each corner of each triangle; empty where the mesh has none.
+    pub corner_uvs: Vec<[[f32; 2]; 3]>,
+    /// Material slot of each triangle; empty means slot 0 everywhere.
+    pub slots: Vec<u16>,
+}
+
+impl Mesh {
+    /// Corner positions of triangle `index`.
+    #[must_use]
+    pub fn corners(&self, index: usize) -> [Vec3; 3] {
+        self.triangles[index].map(|v| self.positions[v as usize])
+    }
+
+    /// Material slot of triangle `index`.
+    #[must_use]
+    pub fn slot(&self, index: usize) -> usize {
+        self.slots.get(index).map_or(0, |&s| s as usize)
+    }
+}
+
+/// A mesh placed in the scene. The index of an object is its geometry id in the ray tracer.
+#[derive(Debug)]
+pub struct Object {
+    /// Blender's name, for messages.
+    pub name: String,
+    /// Its triangles.
+    pub mesh: Arc<Mesh>,
+    /// Transform into scene space; `None` where the mesh already is in scene space (used once).
+    pub scene_from_mesh: Option<DAffine3>,
+    /// Index into [`Scene::materials`] for each slot; never empty.
+    pub materials: Vec<u32>,
+    /// Ray kinds that see it, see [`visibility`].
+    pub visibility: u32,
+}
+
+impl Object {
+    /// Material of triangle `primitive`; slots past the last use the last, as Blender does.
+    #[must_use]
+    pub fn material(&self, primitive: usize) -> usize {
+        let slot = self.mesh.slot(primitive).min(self.materials.len() - 1);
+        self.materials[slot] as usize
+    }
+
+    /// Corner positions of triangle `primitive` in scene space.
+    #[must_use]
+    pub fn corners(&self, primitive: usize) -> [DVec3; 3] {
+        let corners = self.mesh.corners(primitive).map(Vec3::as_dvec3);
+        match &self.scene_from_mesh {
+            Some(transform) => corners.map(|p| transform.transform_point3(p)),
+            None => corners,
+        }
+    }
+}
+
+/// A surface shader.
+#[derive(Debug, Clone)]
+pub struct Material {
+    /// Blender's name, for messages.
+    pub name: String,
+    /// Weighted sum of closures.
+    pub closures: Vec<WeightedClosure>,
+}
+
+/// A lamp in scene space.
+#[derive(Debug, Clone)]
+pub struct Lamp {
+    /// Blender's name, for messages.
+    pub name: String,
+    /// Shape; lengths in scene units, the object's scale applied.
+    pub shape: LampShape,
+    /// Power per channel times the squared length scale (see the module); for a sun irradiance (W·m⁻²).
+    pub power: Rgb,
+    /// Position.
+    pub position: Vec3,
+    /// Unit vectors: the lamp's local x and y, and `axis`, the direction it shines in (local −Z).
+    pub x_axis: Vec3,
+    /// See `x_axis`.
+    pub y_axis: Vec3,
+    /// See `x_axis`.
+    pub axis: Vec3,
+    /// Ray kinds that see the lamp's shape.
+    pub visibility: u32,
+    /// False: its light passes through everything.
+    pub casts_shadow: bool,
+}
+
+/// The camera in scene space.
+#[derive(Debug, Clone)]
+pub struct Camera {
+    /// Projection.
+    pub projection: Projection,
+    /// Camera to scene, without scale.
+    pub scene_from_camera: DAffine3,
+    /// Left, right, bottom, top of the full frame at distance 1 (perspective) or in scene units (orthographic).
+    pub window: [f64; 4],
+    /// Pixels of the full frame.
+    pub resolution: [u32; 2],
+    /// Rendered part: x, y (from the bottom left), width, height.
+    pub region: [u32; 4],
+    /// Near and far clip distance along the view axis, in scene units.
+    pub clip: [f32; 2],
+}
+
+/// Light from outside the scene.
+#[derive(Debug, Clone, Default)]
+pub struct World {
+    /// Radiance (W·m⁻²·sr⁻¹).
+    pub radiance: Rgb,
+    /// Ray kinds that see it.
+    pub visibility: u32,
+    /// True: camera rays that leave the scene give alpha 0.
+    pub film_transparent: bool,
+}
+
+/// Something wrong with the input that does not stop the render.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Problem {
+    /// Name of the object, material or lamp.
+    pub subject: String,
+    /// What is wrong and what was done about it.
+    pub message: String,
+    /// How often.
+    pub count: u64,
+}
+
+/// A checked scene, ready to be traced.
+#[derive(Debug)]
+pub struct Scene {
+    /// Where scene space lies.
+    pub space: SceneSpace,
+    /// Objects, by geometry id.
+    pub objects: Vec<Object>,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Lamps of non-zero power.
+    pub lamps: Vec<Lamp>,
+    /// Camera.
+    pub camera: Camera,
+    /// Background.
+    pub world: World,
+    /// Bounds of all objects, in scene space.
+    pub bounds: [Vec3; 2],
+    /// What was found wrong.
+    pub problems: Vec<Problem>,
+}

@@ -1,0 +1,244 @@
+//! Records a host hands over: world space, metres and watts, one per Blender thing. They are plain data; what is wrong
+//! with them is found by [`super::SceneBuilder`].
+
+use glam::DMat4;
+use serde::Deserialize;
+
+use crate::color::Rgb;
+
+/// Ray kinds an object can be hidden from; the bits are Embree's ray mask.
+pub mod visibility {
+    /// Rays from the camera.
+    pub const CAMERA: u32 = 1;
+    /// Rays that left a diffuse surface, and photons.
+    pub const DIFFUSE: u32 = 2;
+    /// Rays that left a glossy surface by reflection.
+    pub const GLOSSY: u32 = 4;
+    /// Rays that passed through a surface.
+    pub const TRANSMISSION: u32 = 8;
+    /// Shadow rays.
+    pub const SHADOW: u32 = 16;
+    /// Proxy geometry of lamps: never set by the host.
+    pub const LAMP: u32 = 32;
+    /// Everything a mesh object may be seen by.
+    pub const ALL: u32 = CAMERA | DIFFUSE | GLOSSY | TRANSMISSION | SHADOW;
+}
+
+/// One closure of a surface shader: what remains of a node tree once its constants are folded.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum ClosureRecord {
+    /// Lambertian reflection.
+    Diffuse {
+        /// Albedo.
+        color: Rgb,
+    },
+    /// GGX reflection with constant reflectance, multiple scattering kept (Blender's Glossy BSDF).
+    Glossy {
+        /// Reflectance.
+        color: Rgb,
+        /// Blender's roughness, the square root of GGX alpha.
+        roughness: f32,
+    },
+    /// Reflection and refraction by Fresnel's equations (Blender's Glass BSDF).
+    Glass {
+        /// Tint of both.
+        color: Rgb,
+        /// Blender's roughness.
+        roughness: f32,
+        /// Index of refraction, inside over outside.
+        ior: f32,
+    },
+    /// Refraction alone (Blender's Refraction BSDF).
+    Refraction {
+        /// Tint.
+        color: Rgb,
+        /// Blender's roughness.
+        roughness: f32,
+        /// Index of refraction.
+        ior: f32,
+    },
+    /// Light passes straight through, tinted.
+    Transparent {
+        /// Transmittance.
+        color: Rgb,
+    },
+    /// Light emitted from both sides.
+    Emission {
+        /// Radiance (W·m⁻²·sr⁻¹): Blender's colour times strength.
+        radiance: Rgb,
+    },
+    /// Blender's Principled BSDF, the sockets of Blender 4.0 and later.
+    Principled(PrincipledRecord),
+}
+
+/// Sockets of Blender's Principled BSDF, their meaning and ranges Blender's own.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[expect(missing_docs, reason = "the names are Blender's socket names")]
+pub struct PrincipledRecord {
+    pub base_color: Rgb,
+    pub metallic: f32,
+    pub roughness: f32,
+    pub ior: f32,
+    pub alpha: f32,
+    pub specular_ior_level: f32,
+    pub specular_tint: Rgb,
+    pub transmission_weight: f32,
+    pub coat_weight: f32,
+    pub coat_roughness: f32,
+    pub coat_ior: f32,
+    pub coat_tint: Rgb,
+    pub emission_color: Rgb,
+    pub emission_strength: f32,
+}
+
+impl Default for PrincipledRecord {
+    fn default() -> Self {
+        Self {
+            base_color: Rgb::splat(0.8),
+            metallic: 0.0,
+            roughness: 0.5,
+            ior: 1.5,
+            alpha: 1.0,
+            specular_ior_level: 0.5,
+            specular_tint: Rgb::WHITE,
+            transmission_weight: 0.0,
+            coat_weight: 0.0,
+            coat_roughness: 0.03,
+            coat_ior: 1.5,
+            coat_tint: Rgb::WHITE,
+            emission_color: Rgb::WHITE,
+            emission_strength: 0.0,
+        }
+    }
+}
+
+/// A closure and its share in the surface: Mix and Add Shader multiplied out.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WeightedClosure {
+    /// Share, per channel.
+    pub weight: Rgb,
+    /// What is shared.
+    pub closure: ClosureRecord,
+}
+
+/// A surface shader.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialRecord {
+    /// Blender's name, for messages.
+    pub name: String,
+    /// Weighted sum of closures; empty is a black surface.
+    pub closures: Vec<WeightedClosure>,
+}
+
+/// Shape of a lamp and what depends on it. Emission is along local −Z, as Blender's lamps are.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum LampShape {
+    /// Blender's point light.
+    Point {
+        /// Radius (m); 0 is a true point.
+        radius: f32,
+        /// True: a disk turned towards whoever looks at it; false: a sphere.
+        soft_falloff: bool,
+    },
+    /// Blender's spot light.
+    Spot {
+        /// Radius (m).
+        radius: f32,
+        /// As for the point light.
+        soft_falloff: bool,
+        /// Full cone angle (rad).
+        cone_angle: f32,
+        /// Blender's blend, 0 to 1.
+        blend: f32,
+    },
+    /// Light from infinitely far away.
+    Sun {
+        /// Angular diameter (rad).
+        angle: f32,
+    },
+    /// One-sided rectangle in the local xy plane.
+    Rectangle {
+        /// Sides (m), before the object's scale.
+        size: [f32; 2],
+        /// Full spread angle (rad), π for a Lambertian lamp.
+        spread: f32,
+    },
+    /// One-sided ellipse in the local xy plane.
+    Ellipse {
+        /// Diameters (m), before the object's scale.
+        size: [f32; 2],
+        /// Full spread angle (rad).
+        spread: f32,
+    },
+}
+
+/// A lamp.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LampRecord {
+    /// Blender's name, for messages.
+    pub name: String,
+    /// Shape.
+    pub shape: LampShape,
+    /// Blender's power × colour × 2^exposure: watts per channel, for a sun irradiance (W·m⁻²).
+    pub power: Rgb,
+    /// Local to world; columns as Blender's `matrix_world`, row-major in the record.
+    pub world_from_lamp: [[f64; 4]; 4],
+    /// Ray kinds that see the lamp's own shape.
+    pub visibility: u32,
+    /// False: its light passes through everything.
+    pub casts_shadow: bool,
+}
+
+/// How the image plane is projected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Projection {
+    /// Rays leave one point.
+    Perspective,
+    /// Rays are parallel.
+    Orthographic,
+}
+
+/// A camera without lens effects.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraRecord {
+    /// Blender's name, for messages.
+    pub name: String,
+    /// Projection.
+    pub projection: Projection,
+    /// Camera to world, looking along −Z; scale is ignored.
+    pub world_from_camera: [[f64; 4]; 4],
+    /// Left, right, bottom, top of the full frame, on the plane at distance 1 (perspective) or in metres (orthographic).
+    pub window: [f64; 4],
+    /// Pixels of the full frame, width and height.
+    pub resolution: [u32; 2],
+    /// Part of the frame that is rendered: x, y (from the bottom left), width, height.
+    pub region: [u32; 4],
+    /// Near and far clip distance along the view axis (m).
+    pub clip: [f64; 2],
+}
+
+/// Light from everywhere outside.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WorldRecord {
+    /// Radiance of the background (W·m⁻²·sr⁻¹).
+    pub radiance: Rgb,
+    /// Ray kinds that see the background.
+    pub visibility: u32,
+    /// True: camera rays that leave the scene give alpha 0.
+    pub film_transparent: bool,
+}
+
+/// Row-major 4×4 rows to a matrix acting on column vectors.
+#[must_use]
+pub fn matrix(rows: &[[f64; 4]; 4]) -> DMat4 {
+    DMat4::from_cols_array_2d(rows).transpose()
+}
