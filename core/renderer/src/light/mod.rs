@@ -1,1 +1,393 @@
-//! placeholder
+//! Everything that emits: lamps, emissive meshes and the world. Photons start here ([`Lights::emit`]), surfaces ask for
+//! their direct light ([`Lights::sample_direct`]), and rays that meet a light by chance ask what they see and how likely
+//! the other way of finding it was ([`Lights::emitter_pdf`], [`Lights::lamps_crossed`], [`Lights::suns`]).
+//!
+//! All is in scene space. Lamps have Blender's units and agree with Cycles: see each file for its formulas.
+
+mod area;
+mod distant;
+mod emitter;
+mod point;
+mod proxy;
+mod select;
+mod spherical_rectangle;
+mod spot;
+mod spread;
+mod sun;
+mod warp;
+mod world;
+
+use arrayvec::ArrayVec;
+use glam::Vec3;
+
+use crate::color::Rgb;
+use crate::scene::{Lamp, LampShape, Scene};
+use area::AreaLamp;
+use distant::SceneBall;
+use emitter::MeshEmitter;
+use point::PointLamp;
+pub use proxy::LampProxy;
+use select::Cdf;
+use spot::SpotCone;
+use sun::SunLamp;
+use world::WorldLight;
+
+/// Up to this many lights, each look-up weighs them all by what they give at the point; more are weighed by power.
+const WEIGHED_AT_POINT: usize = 64;
+
+/// A photon as it leaves its light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Emission {
+    /// Where it starts.
+    pub origin: Vec3,
+    /// Unit vector along which it travels.
+    pub direction: Vec3,
+    /// Its flux over the probability of its light: the mean over N photons estimates the emitted flux.
+    pub flux: Rgb,
+    /// Normal of the surface or area lamp it leaves, on the side it leaves from.
+    pub normal: Option<Vec3>,
+    /// Distance it must travel before it lights anything; what it meets earlier blocks it and gets nothing. 0 for all but
+    /// soft point and spot lamps, which show less of themselves to near receivers.
+    pub lit_from: f32,
+    /// False: the light passes through everything.
+    pub casts_shadow: bool,
+    /// Index into [`Scene::lamps`]; `None` for emissive meshes and the world.
+    pub lamp: Option<usize>,
+    /// Ray kinds that see the light: a surface whose lobes are not among them is not lit by it directly.
+    pub visibility: u32,
+}
+
+/// A direction towards a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DirectSample {
+    /// Unit vector towards the light.
+    pub wi: Vec3,
+    /// Distance to the light, infinite for suns.
+    pub distance: f32,
+    /// Radiance from there over the pdf; times f·|cos| it estimates the direct light.
+    pub radiance_over_pdf: Rgb,
+    /// Pdf per solid angle, the choice of the light included; without meaning where `is_delta`.
+    pub pdf_solid_angle: f32,
+    /// True where no ray meets this light, so that this sample carries all of it: points of radius 0, suns of angle 0,
+    /// parallel area lamps, and lamps that cast no shadow.
+    pub is_delta: bool,
+    /// False: the light passes through everything.
+    pub casts_shadow: bool,
+    /// Ray kinds that see the light: lobes of other kinds are not lit by it.
+    pub visibility: u32,
+}
+
+/// A light's own part of [`Emission`]; the flux is that of the light.
+struct Photon {
+    origin: Vec3,
+    direction: Vec3,
+    flux: Rgb,
+    normal: Option<Vec3>,
+    lit_from: f32,
+}
+
+/// A light's own part of [`DirectSample`], the choice of the light not included.
+struct LightSample {
+    wi: Vec3,
+    distance: f32,
+    radiance_over_pdf: Rgb,
+    pdf: f32,
+    is_delta: bool,
+}
+
+/// A ray that may meet lamps.
+struct Ray {
+    from: Vec3,
+    wi: Vec3,
+    t_max: f32,
+}
+
+/// What a ray sees of a lamp, and the pdf with which the lamp's own sampling would have found it.
+struct Crossing {
+    radiance: Rgb,
+    pdf: f32,
+}
+
+enum Shape {
+    Point(PointLamp),
+    Area(AreaLamp),
+    Sun(SunLamp),
+    Mesh(MeshEmitter),
+}
+
+struct Light {
+    shape: Shape,
+    lamp: Option<usize>,
+    casts_shadow: bool,
+    visibility: u32,
+}
+
+/// All lights of a scene.
+pub struct Lights {
+    lights: Vec<Light>,
+    /// Index into `lights` of each object that emits.
+    light_of_object: Vec<Option<usize>>,
+    world: WorldLight,
+    /// The world emits, be it seen by photons or not.
+    has_world: bool,
+    ball: SceneBall,
+    /// Over `lights` and then the world, by flux: the choice of photons.
+    by_flux: Option<Cdf>,
+    /// Over `lights`, by flux: the choice of direct light where there are many.
+    by_power: Option<Cdf>,
+    total_flux: Rgb,
+}
+
+impl Lights {
+    /// Lights of a scene; `emission[m]` is the radiance (W·m⁻²·sr⁻¹) both sides of material m emit, black where none.
+    /// Lamps without power or size are left out; negative and non-finite channels count as zero.
+    #[must_use]
+    pub fn build(scene: &Scene, emission: &[Rgb]) -> Self {
+        let emission: Vec<Rgb> = emission.iter().map(|&radiance| positive(radiance)).collect();
+        let mut lights: Vec<Light> = scene
+            .lamps
+            .iter()
+            .enumerate()
+            .filter_map(|(index, lamp)| Light::from_lamp(index, lamp))
+            .collect();
+        let mut light_of_object = vec![None; scene.objects.len()];
+        for (object, light) in scene.objects.iter().zip(&mut light_of_object) {
+            if let Some(emitter) = MeshEmitter::new(object, &emission) {
+                *light = Some(lights.len());
+                let shape = Shape::Mesh(emitter);
+                lights.push(Light { shape, lamp: None, casts_shadow: true, visibility: object.visibility });
+            }
+        }
+        let ball = SceneBall::new(scene.bounds);
+        let world = WorldLight::new(&scene.world);
+        let mut fluxes: Vec<Rgb> = lights.iter().map(|light| light.flux(&ball)).collect();
+        let means =
+            |fluxes: &[Rgb]| -> Vec<f64> { fluxes.iter().map(|flux| f64::from(flux.mean())).collect() };
+        let by_power = Cdf::with_even_share(&means(&fluxes));
+        fluxes.push(world.flux(&ball));
+        Self {
+            lights,
+            light_of_object,
+            world,
+            has_world: !positive(scene.world.radiance).is_black(),
+            ball,
+            by_flux: Cdf::with_even_share(&means(&fluxes)),
+            by_power,
+            total_flux: fluxes.into_iter().sum(),
+        }
+    }
+
+    /// True when nothing emits at all, the world included.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.lights.is_empty() && !self.has_world
+    }
+
+    /// Flux emitted into the scene (W × squared length scale), the world included.
+    #[must_use]
+    pub fn total_flux(&self) -> Rgb {
+        self.total_flux
+    }
+
+    /// True when there is a lamp that rays can meet, suns aside.
+    #[must_use]
+    pub fn has_lamp_shapes(&self) -> bool {
+        self.lights.iter().any(|light| light.hull().is_some())
+    }
+
+    /// Triangles that hold each lamp rays can meet, suns aside.
+    #[must_use]
+    pub fn lamp_proxies(&self) -> Vec<LampProxy> {
+        let proxy = |light: &Light| {
+            let (positions, triangles) = light.hull()?;
+            Some(LampProxy { lamp: light.lamp?, positions, triangles, visibility: light.visibility })
+        };
+        self.lights.iter().filter_map(proxy).collect()
+    }
+
+    /// One photon: `u[0]` chooses the light by flux, `u[1..3]` the place, `u[3..5]` the direction. `None` when nothing
+    /// emits into the scene.
+    #[must_use]
+    pub fn emit(&self, u: [f32; 5]) -> Option<Emission> {
+        let [choice, position @ .., d0, d1] = u;
+        let direction = [d0, d1];
+        let chosen = self.by_flux.as_ref()?.choose(choice);
+        let light = self.lights.get(chosen.index);
+        let photon = match light.map(|light| &light.shape) {
+            None => self.world.emit(&self.ball, position, direction),
+            Some(Shape::Point(lamp)) => lamp.emit(position, direction),
+            Some(Shape::Area(lamp)) => lamp.emit(position, direction),
+            Some(Shape::Sun(lamp)) => lamp.emit(&self.ball, position, direction),
+            Some(Shape::Mesh(mesh)) => mesh.emit(chosen.rest, position, direction),
+        };
+        Some(Emission {
+            origin: photon.origin,
+            direction: photon.direction,
+            flux: photon.flux / chosen.probability,
+            normal: photon.normal,
+            lit_from: photon.lit_from,
+            casts_shadow: light.is_none_or(|light| light.casts_shadow),
+            lamp: light.and_then(|light| light.lamp),
+            visibility: light.map_or(u32::MAX, |light| light.visibility),
+        })
+    }
+
+    /// A direction from `p` towards a lamp or an emissive mesh: `u[0]` chooses it, `u[1..3]` the place on it. `None` where
+    /// the sample contributes nothing.
+    #[must_use]
+    pub fn sample_direct(&self, p: Vec3, u: [f32; 3]) -> Option<DirectSample> {
+        let [choice, position @ ..] = u;
+        let chosen = match self.weights(p) {
+            Some(weights) => select::choose(&weights, choice)?,
+            None => self.by_power.as_ref()?.choose(choice),
+        };
+        let light = &self.lights[chosen.index];
+        let sample = match &light.shape {
+            Shape::Point(lamp) => lamp.sample(p, position)?,
+            Shape::Area(lamp) => lamp.sample(p, position)?,
+            Shape::Sun(lamp) => lamp.sample(position),
+            Shape::Mesh(mesh) => mesh.sample(p, chosen.rest, position)?,
+        };
+        Some(DirectSample {
+            wi: sample.wi,
+            distance: sample.distance,
+            radiance_over_pdf: sample.radiance_over_pdf / chosen.probability,
+            pdf_solid_angle: sample.pdf * chosen.probability,
+            is_delta: sample.is_delta || !light.casts_shadow,
+            casts_shadow: light.casts_shadow,
+            visibility: light.visibility,
+        })
+    }
+
+    /// Pdf per solid angle with which [`Lights::sample_direct`] from `from` finds the direction `wi`, whose ray meets
+    /// triangle `primitive` of `object` at distance `t`. `ng` is the triangle's normal in scene space, of any length.
+    /// 0 where the triangle does not emit.
+    #[must_use]
+    pub fn emitter_pdf(&self, from: Vec3, object: u32, primitive: u32, wi: Vec3, t: f32, ng: Vec3) -> f32 {
+        let Some(index) = self.light_of_object.get(object as usize).copied().flatten() else { return 0.0 };
+        let Shape::Mesh(mesh) = &self.lights[index].shape else { return 0.0 };
+        let cos = wi.dot(ng.normalize_or_zero());
+        mesh.primitive_pdf(primitive as usize, t, cos) * self.choice_probability(from, index)
+    }
+
+    /// Calls back, for each lamp the ray meets before `t_max`, with its radiance and the pdf per solid angle with which
+    /// [`Lights::sample_direct`] from `from` finds this direction. Lamps do not block. Those hidden from the ray's kind
+    /// (one bit of [`crate::scene::visibility`]) are skipped, as are suns and what `is_delta` stands for.
+    pub fn lamps_crossed(
+        &self,
+        from: Vec3,
+        wi: Vec3,
+        t_max: f32,
+        ray_kind_bit: u32,
+        each: &mut dyn FnMut(Rgb, f32),
+    ) {
+        let ray = Ray { from, wi, t_max };
+        for (index, light) in self.lights.iter().enumerate() {
+            if light.visibility & ray_kind_bit == 0 || !light.can_be_met() {
+                continue;
+            }
+            let crossing = match &light.shape {
+                Shape::Point(lamp) => lamp.crossing(&ray),
+                Shape::Area(lamp) => lamp.crossing(&ray),
+                Shape::Sun(_) | Shape::Mesh(_) => None,
+            };
+            if let Some(crossing) = crossing {
+                each(crossing.radiance, crossing.pdf * self.choice_probability(from, index));
+            }
+        }
+    }
+
+    /// As [`Lights::lamps_crossed`], for the suns a ray that leaves the scene sees.
+    pub fn suns(&self, from: Vec3, wi: Vec3, ray_kind_bit: u32, each: &mut dyn FnMut(Rgb, f32)) {
+        for (index, light) in self.lights.iter().enumerate() {
+            let Shape::Sun(lamp) = &light.shape else { continue };
+            if light.visibility & ray_kind_bit == 0 || !light.can_be_met() {
+                continue;
+            }
+            if let Some(crossing) = lamp.crossing(wi) {
+                each(crossing.radiance, crossing.pdf * self.choice_probability(from, index));
+            }
+        }
+    }
+
+    /// About the irradiance each light gives at `p`; `None` for more lights than are weighed this way.
+    fn weights(&self, p: Vec3) -> Option<ArrayVec<f32, WEIGHED_AT_POINT>> {
+        (self.lights.len() <= WEIGHED_AT_POINT)
+            .then(|| self.lights.iter().map(|light| light.irradiance_estimate(p)).collect())
+    }
+
+    /// Probability with which [`Lights::sample_direct`] from `p` chooses light `index`.
+    fn choice_probability(&self, p: Vec3, index: usize) -> f32 {
+        match self.weights(p) {
+            Some(weights) => select::probability(&weights, index),
+            None => self.by_power.as_ref().map_or(0.0, |cdf| cdf.probability(index) as f32),
+        }
+    }
+}
+
+impl Light {
+    /// `None` for a lamp that gives no light.
+    fn from_lamp(index: usize, lamp: &Lamp) -> Option<Self> {
+        let lamp = &Lamp { power: positive(lamp.power), ..lamp.clone() };
+        if lamp.power.is_black() || !lamp.position.is_finite() {
+            return None;
+        }
+        let shape = match lamp.shape {
+            LampShape::Point { radius, soft_falloff } => {
+                Shape::Point(PointLamp::new(lamp, radius, soft_falloff, None))
+            }
+            LampShape::Spot { radius, soft_falloff, cone_angle, blend } => {
+                let cone = SpotCone::new(lamp.axis, cone_angle, blend)?;
+                Shape::Point(PointLamp::new(lamp, radius, soft_falloff, Some(cone)))
+            }
+            LampShape::Sun { angle } => Shape::Sun(SunLamp::new(lamp, angle)?),
+            LampShape::Rectangle { size, spread } => Shape::Area(AreaLamp::new(lamp, size, spread, false)?),
+            LampShape::Ellipse { size, spread } => Shape::Area(AreaLamp::new(lamp, size, spread, true)?),
+        };
+        Some(Self { shape, lamp: Some(index), casts_shadow: lamp.casts_shadow, visibility: lamp.visibility })
+    }
+
+    fn flux(&self, ball: &SceneBall) -> Rgb {
+        match &self.shape {
+            Shape::Point(lamp) => lamp.flux(),
+            Shape::Area(lamp) => lamp.flux(),
+            Shape::Sun(lamp) => lamp.flux(ball),
+            Shape::Mesh(mesh) => mesh.flux(),
+        }
+    }
+
+    fn irradiance_estimate(&self, p: Vec3) -> f32 {
+        match &self.shape {
+            Shape::Point(lamp) => lamp.irradiance_estimate(p),
+            Shape::Area(lamp) => lamp.irradiance_estimate(p),
+            Shape::Sun(lamp) => lamp.irradiance_estimate(),
+            Shape::Mesh(mesh) => mesh.irradiance_estimate(p),
+        }
+    }
+
+    /// True where rays can meet the light. Light that passes through everything is left to direct sampling alone, since a
+    /// ray ends at what it should pass through.
+    fn can_be_met(&self) -> bool {
+        let has_extent = match &self.shape {
+            Shape::Point(lamp) => lamp.has_extent(),
+            Shape::Area(lamp) => lamp.has_extent(),
+            Shape::Sun(lamp) => lamp.has_extent(),
+            Shape::Mesh(_) => true,
+        };
+        has_extent && self.casts_shadow
+    }
+
+    /// What holds the lamp, where rays can meet it.
+    fn hull(&self) -> Option<proxy::Hull> {
+        match &self.shape {
+            Shape::Point(lamp) if self.can_be_met() => Some(lamp.hull()),
+            Shape::Area(lamp) if self.can_be_met() => Some(lamp.hull()),
+            _ => None,
+        }
+    }
+}
+
+/// Negative and non-finite channels made zero.
+fn positive(color: Rgb) -> Rgb {
+    color.map(|c| if c.is_finite() { c.max(0.0) } else { 0.0 })
+}

@@ -1,0 +1,216 @@
+//! Rectangular and elliptic lamps: one-sided, radiance power / (π area) on the whole, narrowed by [`Spread`].
+
+use std::f32::consts::{FRAC_1_PI, FRAC_PI_4, PI};
+
+use glam::{Vec2, Vec3};
+
+use super::proxy::Hull;
+use super::spherical_rectangle::SphericalRectangle;
+use super::spread::Spread;
+use super::{Crossing, LightSample, Photon, Ray, proxy, warp};
+use crate::color::Rgb;
+use crate::scene::Lamp;
+
+/// An ellipse whose bounding rectangle covers more than this (sr) is sampled by the rectangle's solid angle, which
+/// wastes a fifth of the samples and keeps the rest even close to the lamp; smaller ones are sampled by area.
+const WIDE_SOLID_ANGLE: f64 = 0.5;
+
+/// An area lamp.
+#[derive(Clone, Debug)]
+pub(super) struct AreaLamp {
+    center: Vec3,
+    x_axis: Vec3,
+    y_axis: Vec3,
+    /// The side that shines.
+    normal: Vec3,
+    /// Half the sides or diameters.
+    half: Vec2,
+    round: bool,
+    area: f32,
+    power: Rgb,
+    spread: Spread,
+}
+
+/// The part of the lamp's plane that is sampled from one point, in coordinates about the foot of the perpendicular from
+/// that point.
+enum Region {
+    /// By solid angle.
+    Spherical(SphericalRectangle),
+    /// A rectangle by area: center and half sides.
+    Flat(Vec2, Vec2),
+    /// The whole ellipse by area.
+    Ellipse,
+}
+
+impl AreaLamp {
+    /// `None` for a lamp without area.
+    pub(super) fn new(lamp: &Lamp, size: [f32; 2], spread: f32, round: bool) -> Option<Self> {
+        let half = Vec2::from(size).abs() * 0.5;
+        let area = 4.0 * half.x * half.y * if round { FRAC_PI_4 } else { 1.0 };
+        let normal = lamp.axis.try_normalize()?;
+        // A sheared parent leaves axes that are not at right angles: the normal is kept, the rest follows.
+        let x_axis = lamp.x_axis.reject_from_normalized(normal).try_normalize()?;
+        let y_axis = normal.cross(x_axis);
+        (area > 0.0 && area.is_finite()).then(|| Self {
+            center: lamp.position,
+            x_axis,
+            y_axis,
+            normal,
+            half,
+            round,
+            area,
+            power: lamp.power,
+            spread: Spread::new(spread),
+        })
+    }
+
+    /// False for parallel light, which no ray can meet.
+    pub(super) fn has_extent(&self) -> bool {
+        self.spread != Spread::Parallel
+    }
+
+    /// Emitted flux.
+    pub(super) fn flux(&self) -> Rgb {
+        self.power
+    }
+
+    /// Triangles that hold the lamp: its bounding rectangle.
+    pub(super) fn hull(&self) -> Hull {
+        let [x, y] = [self.x_axis * self.half.x, self.y_axis * self.half.y];
+        let c = self.center;
+        proxy::rectangle(c, [c - x - y, c + x - y, c + x + y, c - x + y])
+    }
+
+    /// About the irradiance at `p`, for choosing between lights; 0 only where there is none.
+    pub(super) fn irradiance_estimate(&self, p: Vec3) -> f32 {
+        let (foot, height) = self.local(p);
+        if height <= 0.0 || !self.is_reached(foot, height) {
+            return 0.0;
+        }
+        let nearest = (foot.abs() - self.half).max(Vec2::ZERO);
+        let distance_squared = nearest.length_squared() + height * height;
+        self.power.mean() * FRAC_1_PI * self.spread.peak() / (distance_squared + self.area * FRAC_1_PI)
+    }
+
+    /// A point of the lamp as seen from `p`.
+    pub(super) fn sample(&self, p: Vec3, u: [f32; 2]) -> Option<LightSample> {
+        let (foot, height) = self.local(p);
+        if height <= 0.0 {
+            return None;
+        }
+        if self.spread == Spread::Parallel {
+            let radiance_over_pdf = self.power / self.area;
+            return self.contains(foot).then_some(LightSample {
+                wi: -self.normal,
+                distance: height,
+                radiance_over_pdf,
+                pdf: 1.0,
+                is_delta: true,
+            });
+        }
+        let region = self.region(foot, height)?;
+        let offset = match &region {
+            Region::Spherical(rectangle) => Vec2::from(rectangle.sample(u).map(|c| c as f32)),
+            Region::Flat(center, half) => *center + *half * (Vec2::from(u) * 2.0 - 1.0),
+            Region::Ellipse => warp::disk(u) * self.half - foot,
+        };
+        if !self.contains(foot + offset) {
+            return None;
+        }
+        let along = self.x_axis * offset.x + self.y_axis * offset.y - self.normal * height;
+        let distance = along.length();
+        let pdf = self.pdf(&region, distance, height);
+        let radiance = self.radiance(offset, height);
+        (pdf > 0.0 && !radiance.is_black()).then(|| LightSample {
+            wi: along / distance,
+            distance,
+            radiance_over_pdf: radiance / pdf,
+            pdf,
+            is_delta: false,
+        })
+    }
+
+    /// Where the ray meets the shining side.
+    pub(super) fn crossing(&self, ray: &Ray) -> Option<Crossing> {
+        let (foot, height) = self.local(ray.from);
+        let cos = -ray.wi.dot(self.normal);
+        if height <= 0.0 || cos <= 0.0 {
+            return None;
+        }
+        let distance = height / cos;
+        let offset = Vec2::new(ray.wi.dot(self.x_axis), ray.wi.dot(self.y_axis)) * distance;
+        if distance > ray.t_max || !self.contains(foot + offset) {
+            return None;
+        }
+        let radiance = self.radiance(offset, height);
+        let pdf = self.pdf(&self.region(foot, height)?, distance, height);
+        (!radiance.is_black()).then_some(Crossing { radiance, pdf })
+    }
+
+    /// A photon; every one carries the lamp's whole flux.
+    pub(super) fn emit(&self, position: [f32; 2], direction: [f32; 2]) -> Photon {
+        let unit = if self.round { warp::disk(position) } else { Vec2::from(position) * 2.0 - 1.0 };
+        let place = unit * self.half;
+        Photon {
+            origin: self.center + self.x_axis * place.x + self.y_axis * place.y,
+            direction: self.spread.sample(self.normal, direction),
+            flux: self.power,
+            normal: Some(self.normal),
+            lit_from: 0.0,
+        }
+    }
+
+    /// Foot of the perpendicular from `p` in the lamp's axes, and height above the shining side.
+    fn local(&self, p: Vec3) -> (Vec2, f32) {
+        let v = p - self.center;
+        (Vec2::new(v.dot(self.x_axis), v.dot(self.y_axis)), v.dot(self.normal))
+    }
+
+    fn contains(&self, place: Vec2) -> bool {
+        let unit = place / self.half;
+        if self.round { unit.length_squared() <= 1.0 } else { unit.abs().max_element() <= 1.0 }
+    }
+
+    /// True where light can come from the lamp to a point at `foot` and `height`.
+    fn is_reached(&self, foot: Vec2, height: f32) -> bool {
+        let reach = self.spread.reach() * height;
+        ((foot.abs() - self.half).max(Vec2::ZERO)).max_element() <= reach
+    }
+
+    /// Radiance towards a point at `height` from the lamp's point `offset` away from its foot.
+    fn radiance(&self, offset: Vec2, height: f32) -> Rgb {
+        self.power * (FRAC_1_PI / self.area * self.spread.attenuation(offset.length() / height))
+    }
+
+    /// What to sample from a point: the lamp, less what the spread hides from there. `None` if it hides everything.
+    fn region(&self, foot: Vec2, height: f32) -> Option<Region> {
+        let reach = Vec2::splat(self.spread.reach() * height);
+        let low = (-self.half - foot).max(-reach);
+        let high = (self.half - foot).min(reach);
+        let sides = high - low;
+        if sides.min_element() <= 0.0 {
+            return None;
+        }
+        let x = [f64::from(low.x), f64::from(high.x)];
+        let y = [f64::from(low.y), f64::from(high.y)];
+        let spherical = SphericalRectangle::new(x, y, f64::from(height));
+        let is_part = sides.x * sides.y < self.area;
+        Some(match spherical {
+            Some(rectangle) if !self.round || is_part || rectangle.solid_angle > WIDE_SOLID_ANGLE => {
+                Region::Spherical(rectangle)
+            }
+            _ if self.round && !is_part => Region::Ellipse,
+            _ => Region::Flat(0.5 * (low + high), 0.5 * sides),
+        })
+    }
+
+    /// Pdf per solid angle with which [`AreaLamp::sample`] finds a point of the region at `distance`.
+    fn pdf(&self, region: &Region, distance: f32, height: f32) -> f32 {
+        let area = match region {
+            Region::Spherical(rectangle) => return (1.0 / rectangle.solid_angle) as f32,
+            Region::Flat(_, half) => 4.0 * half.x * half.y,
+            Region::Ellipse => PI * self.half.x * self.half.y,
+        };
+        distance * distance * (distance / height) / area
+    }
+}

@@ -1,0 +1,111 @@
+//! Choosing one of several things with probability in proportion to a weight.
+
+/// Share of every choice that is spread evenly, so that what a weight underestimates is still found.
+const EVEN_SHARE: f64 = 0.1;
+
+/// What was chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Choice {
+    /// Which one.
+    pub index: usize,
+    /// How likely it was.
+    pub probability: f32,
+    /// The rest of the random number, again uniform in 0..1.
+    pub rest: f32,
+}
+
+/// A discrete distribution as a running sum in f64 whose last entry is exactly 1. Entries of weight 0 are never chosen.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Cdf {
+    sums: Vec<f64>,
+}
+
+impl Cdf {
+    /// From non-negative, finite weights; `None` if none is positive.
+    pub(super) fn new(weights: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let mut total = 0.0;
+        let mut sums: Vec<f64> = weights
+            .into_iter()
+            .map(|weight| {
+                total += weight;
+                total
+            })
+            .collect();
+        if !(total > 0.0 && total.is_finite()) {
+            return None;
+        }
+        for sum in &mut sums {
+            // Entries behind the last positive one have the same sum and become 1 with it.
+            *sum = if *sum == total { 1.0 } else { *sum / total };
+        }
+        Some(Self { sums })
+    }
+
+    /// As [`Cdf::new`], with a tenth spread evenly over the entries of positive weight.
+    pub(super) fn with_even_share(weights: &[f64]) -> Option<Self> {
+        let total: f64 = weights.iter().sum();
+        let positive = weights.iter().filter(|w| **w > 0.0).count().max(1) as f64;
+        Self::new(weights.iter().map(|&weight| mixed(weight, total, positive)))
+    }
+
+    /// Probability of entry `index`.
+    pub(super) fn probability(&self, index: usize) -> f64 {
+        let before = if index == 0 { 0.0 } else { self.sums[index - 1] };
+        self.sums[index] - before
+    }
+
+    /// The entry `u` in 0..1 falls into.
+    pub(super) fn choose(&self, u: f32) -> Choice {
+        let u = f64::from(u).clamp(0.0, 1.0 - f64::EPSILON);
+        // The first sum greater than u: it differs from the one before, so its entry has a positive weight.
+        let index = self.sums.partition_point(|&sum| sum <= u);
+        let before = if index == 0 { 0.0 } else { self.sums[index - 1] };
+        let probability = self.sums[index] - before;
+        Choice { index, probability: probability as f32, rest: rest((u - before) / probability) }
+    }
+}
+
+/// Chooses among a few weights that were made on the spot, with the even share mixed in.
+pub(super) fn choose(weights: &[f32], u: f32) -> Option<Choice> {
+    let (total, positive) = totals(weights)?;
+    let mut left = f64::from(u).clamp(0.0, 1.0 - f64::EPSILON);
+    let mut chosen = None;
+    for (index, &weight) in weights.iter().enumerate() {
+        let probability = mixed(f64::from(weight), total, positive);
+        if probability <= 0.0 {
+            continue;
+        }
+        // Kept for when rounding lets u slip past the last one.
+        chosen = Some(Choice {
+            index,
+            probability: probability as f32,
+            rest: rest(left.min(probability) / probability),
+        });
+        if left < probability {
+            break;
+        }
+        left -= probability;
+    }
+    chosen
+}
+
+/// Probability with which [`choose`] returns `index`.
+pub(super) fn probability(weights: &[f32], index: usize) -> f32 {
+    totals(weights).map_or(0.0, |(total, positive)| mixed(f64::from(weights[index]), total, positive) as f32)
+}
+
+/// Sum of the weights and number of positive ones; `None` if there is nothing to choose from.
+fn totals(weights: &[f32]) -> Option<(f64, f64)> {
+    let total: f64 = weights.iter().map(|&w| f64::from(w)).sum();
+    let positive = weights.iter().filter(|w| **w > 0.0).count();
+    (total > 0.0 && total.is_finite()).then_some((total, positive as f64))
+}
+
+fn mixed(weight: f64, total: f64, positive: f64) -> f64 {
+    if weight > 0.0 { (1.0 - EVEN_SHARE) * weight / total + EVEN_SHARE / positive } else { 0.0 }
+}
+
+/// Keeps a rescaled random number below 1 once it is f32.
+fn rest(u: f64) -> f32 {
+    (u as f32).clamp(0.0, 1.0 - f32::EPSILON / 2.0)
+}
