@@ -28,8 +28,7 @@ impl Device {
     pub fn new(library: &Library, threads: usize) -> Result<Self, EmbreeError> {
         let raw = RawDevice::new(Arc::clone(&library.api), threads)?;
         if raw.property(sys::DEVICE_PROPERTY_RAY_MASK_SUPPORTED) != 1 {
-            let message = "this library was built without ray masks, which visibility to camera, light and shadow \
-                           rays relies on";
+            let message = "this library was built without ray masks, which the visibility of objects needs";
             return Err(EmbreeError::Device { code: sys::ERROR_NONE, message: message.to_owned() });
         }
         Ok(Self { raw: Arc::new(raw) })
@@ -42,8 +41,8 @@ pub(crate) struct RawDevice {
     pub(crate) handle: NonNull<DeviceObject>,
 }
 
-// SAFETY: Embree's device functions may be called from any thread, at the same time; the handle is a counted reference
-// that is not tied to the thread that made it.
+// SAFETY: Embree's device functions may be called from any thread, at the same time; the handle is a counted
+// reference that is not tied to the thread that made it.
 unsafe impl Send for RawDevice {}
 // SAFETY: as above.
 unsafe impl Sync for RawDevice {}
@@ -73,15 +72,16 @@ impl RawDevice {
 
 impl Drop for RawDevice {
     fn drop(&mut self) {
-        // SAFETY: this is the only owner of the reference, and it is given up once. Scenes hold references of their own.
+        // SAFETY: this is the only owner of the reference, and it is given up once. Scenes hold references of
+        // their own.
         unsafe { (self.api.release_device)(self.handle.as_ptr()) };
     }
 }
 
 /// Turns what Embree reported on this thread since the last check into an error.
 ///
-/// Embree calls the error function on the thread that made the failing call, whichever thread the fault arose on, so
-/// builds running side by side on one device cannot receive each other's errors.
+/// Embree calls the error function on the thread that made the failing call, whichever thread the fault arose
+/// on, so builds running side by side on one device cannot receive each other's errors.
 pub(crate) fn check() -> Result<(), EmbreeError> {
     match REPORTED.take() {
         Some((code, message)) => Err(EmbreeError::from_code(code, message)),

@@ -10,8 +10,12 @@ use crate::sys;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum EmbreeError {
-    /// The file is not there, is not a shared library for this machine, or needs another library that is not there.
-    #[error("Embree could not be opened from {}: {cause}. Reinstalling the add-on restores it.", path.display())]
+    /// The file is not there, is not a shared library for this machine, or needs another library that is not
+    /// there.
+    #[error(
+        "Embree could not be opened from {}: {cause}. Reinstalling the add-on restores it.",
+        path.display()
+    )]
     Missing {
         /// The file asked for.
         path: PathBuf,

@@ -9,8 +9,8 @@ use crate::sys::{self, Api};
 
 /// An Embree library opened at run time. Clones share it.
 ///
-/// It stays in the process until the end: Embree's build threads outlive every handle, and unloading their code under
-/// them would crash. Opening the same file again costs nothing.
+/// It stays in the process until the end: Embree's build threads outlive every handle, and unloading their
+/// code under them would crash. Opening the same file again costs nothing.
 #[derive(Clone)]
 pub struct Library {
     pub(crate) api: Arc<Api>,
@@ -18,11 +18,12 @@ pub struct Library {
 }
 
 impl Library {
-    /// Opens the Embree shared library at `path` (`.so`, `.dylib` or `.dll`); its TBB is looked for beside it.
+    /// Opens the Embree shared library at `path` (`.so`, `.dylib` or `.dll`); its TBB is looked for beside
+    /// it.
     ///
     /// # Errors
-    /// [`EmbreeError::Missing`] if the system cannot open the file, [`EmbreeError::NotEmbree`] if it is something else,
-    /// [`EmbreeError::WrongVersion`] if it is not Embree 4.3 or a later 4.x.
+    /// [`EmbreeError::Missing`] if the system cannot open the file, [`EmbreeError::NotEmbree`] if it is
+    /// something else, [`EmbreeError::WrongVersion`] if it is not Embree 4.3 or a later 4.x.
     pub fn open(path: &Path) -> Result<Self, EmbreeError> {
         let opened =
             open_file(path).map_err(|cause| EmbreeError::Missing { path: path.to_owned(), cause })?;
@@ -62,8 +63,8 @@ fn open_file(path: &Path) -> Result<libloading::Library, libloading::Error> {
     /// From glibc's `dlfcn.h`.
     const RTLD_DEEPBIND: std::ffi::c_int = 0x8;
     let flags = unix::RTLD_NOW | unix::RTLD_LOCAL | RTLD_DEEPBIND;
-    // SAFETY: opening runs the library's initializers. The caller names a file installed with the add-on; Embree's and
-    // TBB's initializers may run on any thread at any time.
+    // SAFETY: opening runs the library's initializers. The caller names a file installed with the add-on;
+    // Embree's and TBB's initializers may run on any thread at any time.
     unsafe { unix::Library::open(Some(path), flags) }.map(Into::into)
 }
 
@@ -73,15 +74,16 @@ fn open_file(path: &Path) -> Result<libloading::Library, libloading::Error> {
     use libloading::os::windows;
     let flags = windows::LOAD_LIBRARY_SEARCH_DLL_LOAD_DIR | windows::LOAD_LIBRARY_SEARCH_DEFAULT_DIRS;
     let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    // SAFETY: opening runs the library's initializers. The caller names a file installed with the add-on; Embree's and
-    // TBB's initializers may run on any thread at any time.
+    // SAFETY: opening runs the library's initializers. The caller names a file installed with the add-on;
+    // Embree's and TBB's initializers may run on any thread at any time.
     unsafe { windows::Library::load_with_flags(absolute, flags) }.map(Into::into)
 }
 
-/// Elsewhere the platform's default is right: symbols are local, and bound to the library they were linked with.
+/// Elsewhere the platform's default is right: symbols are local, and bound to the library they were linked
+/// with.
 #[cfg(not(any(windows, all(target_os = "linux", target_env = "gnu"))))]
 fn open_file(path: &Path) -> Result<libloading::Library, libloading::Error> {
-    // SAFETY: opening runs the library's initializers. The caller names a file installed with the add-on; Embree's and
-    // TBB's initializers may run on any thread at any time.
+    // SAFETY: opening runs the library's initializers. The caller names a file installed with the add-on;
+    // Embree's and TBB's initializers may run on any thread at any time.
     unsafe { libloading::Library::new(path) }
 }

@@ -12,7 +12,8 @@ static COHERENT: QueryArguments = QueryArguments::new(true);
 // SAFETY: the statics are never written, and their pointers are null.
 unsafe impl Sync for QueryArguments {}
 
-/// A ray: the points `origin + t * direction` with `t_near <= t <= t_far`. The direction need not be a unit vector.
+/// A ray: the points `origin + t * direction` with `t_near <= t <= t_far`. The direction need not be a unit
+/// vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// Where it starts.
@@ -36,7 +37,10 @@ pub struct Hit {
     pub u: f32,
     /// Barycentric weight of the triangle's third corner; the first has `1 - u - v`.
     pub v: f32,
-    /// Unnormalized geometric normal `(p1 - p0) × (p2 - p0)`; inside an instance, in the instance's own space.
+    /// Unnormalized geometric normal `(p1 - p0) × (p2 - p0)`; in an instance, in the instance's own space.
+    ///
+    /// Embree takes it from corners relative to the ray's origin, so it carries rounding that varies from ray
+    /// to ray; whoever needs the same normal every time takes it from the positions.
     pub normal: [f32; 3],
     /// Index of the triangle in its mesh.
     pub primitive: u32,
@@ -44,7 +48,8 @@ pub struct Hit {
     pub object: u32,
 }
 
-/// Sixteen rays, one per lane (`RTCRay16`). The default sees everything from the origin on, but points nowhere.
+/// Sixteen rays, one per lane (`RTCRay16`). The default sees everything from the origin on, but points
+/// nowhere.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Ray16 {
@@ -134,7 +139,8 @@ impl Default for Hit16 {
 }
 
 impl Hit16 {
-    /// What [`Hit::object`] is for a single ray: the instance if there is one, else the mesh; [`INVALID_ID`] on a miss.
+    /// What [`Hit::object`] is for a single ray: the instance if there is one, else the mesh; [`INVALID_ID`]
+    /// on a miss.
     pub fn object(&self, lane: usize) -> u32 {
         object(self.geom_id[lane], self.inst_id[lane])
     }
@@ -154,7 +160,8 @@ impl CommittedScene {
     /// The first hit along the ray.
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
         let mut query = SingleRayHit { ray: single_ray(ray), hit: NO_HIT };
-        // SAFETY: the scene is alive and committed; the structure has the layout, alignment and room Embree expects.
+        // SAFETY: the scene is alive and committed; the structure has the layout, alignment and room Embree
+        // expects.
         unsafe { (self.api().intersect1)(self.handle(), &raw mut query, &raw const INCOHERENT) };
         let SingleRayHit { ray, hit } = query;
         (hit.geom_id != INVALID_ID).then(|| Hit {
@@ -170,22 +177,24 @@ impl CommittedScene {
     /// Whether anything lies on the ray.
     pub fn occluded(&self, ray: &Ray) -> bool {
         let mut query = single_ray(ray);
-        // SAFETY: the scene is alive and committed; the structure has the layout and alignment Embree expects.
+        // SAFETY: the scene is alive and committed; the structure has the layout and alignment Embree
+        // expects.
         unsafe { (self.api().occluded1)(self.handle(), &raw mut query, &raw const INCOHERENT) };
         query.t_far == f32::NEG_INFINITY
     }
 
     /// The first hits of sixteen rays. Lanes with a nonzero `valid` are traced, the others left as they are.
     ///
-    /// The hits of traced lanes are cleared first. Say `coherent` if the rays start close together and run alike: it
-    /// changes the speed, not the answer.
+    /// The hits of traced lanes are cleared first. Say `coherent` if the rays start close together and run
+    /// alike: it changes the speed, not the answer.
     pub fn intersect16(&self, valid: &[i32; 16], packet: &mut RayHit16, coherent: bool) {
         let active = active_lanes(valid);
         for lane in 0..16 {
             packet.hit.geom_id[lane] |= active.0[lane].cast_unsigned();
             packet.hit.inst_id[lane] |= active.0[lane].cast_unsigned();
         }
-        // SAFETY: the scene is alive and committed; lanes and packet have the layout, alignment and room Embree expects.
+        // SAFETY: the scene is alive and committed; lanes and packet have the layout, alignment and room
+        // Embree expects.
         unsafe { (self.api().intersect16)(&raw const active, self.handle(), packet, arguments(coherent)) };
     }
 
@@ -195,7 +204,8 @@ impl CommittedScene {
     /// [`intersect16`](Self::intersect16).
     pub fn occluded16(&self, valid: &[i32; 16], packet: &mut Ray16, coherent: bool) {
         let active = active_lanes(valid);
-        // SAFETY: the scene is alive and committed; lanes and packet have the layout and alignment Embree expects.
+        // SAFETY: the scene is alive and committed; lanes and packet have the layout and alignment Embree
+        // expects.
         unsafe { (self.api().occluded16)(&raw const active, self.handle(), packet, arguments(coherent)) };
     }
 }

@@ -7,11 +7,12 @@ use std::panic::{self, AssertUnwindSafe};
 use std::ptr::{self, NonNull};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::EmbreeError;
 use crate::device::{self, Device, RawDevice};
 use crate::sys::{self, Bounds, GeometryObject, SceneObject};
-use crate::{EmbreeError, INVALID_ID};
 
-/// Ids up to this are taken. Embree keeps a table as long as the largest id, so ids should be small and dense.
+/// Ids up to this are taken. Embree keeps a table as long as the largest id, so ids should be small and
+/// dense.
 const LARGEST_ID: u32 = (1 << 26) - 1;
 
 /// How much time a build spends on making rays fast.
@@ -23,7 +24,8 @@ pub enum BuildQuality {
     High,
 }
 
-/// A scene being put together. Its rays are traced robustly: none slips through between neighboring triangles.
+/// A scene being put together. Its rays are traced robustly: none slips through between neighboring
+/// triangles.
 pub struct SceneBuilder {
     scene: RawScene,
     ids: HashSet<u32>,
@@ -57,12 +59,12 @@ impl SceneBuilder {
 
     /// Adds a triangle mesh; hits report it as `id`. The arrays are copied.
     ///
-    /// Rays whose mask has no bit in common with `mask` do not see it. Triangles with a position that is not finite
-    /// (or beyond ±1.8e18) are never hit. A mesh without triangles is allowed.
+    /// Rays whose mask has no bit in common with `mask` do not see it. Triangles with a position that is not
+    /// finite (or beyond ±1.8e18) are never hit. A mesh without triangles is allowed.
     ///
     /// # Errors
-    /// [`EmbreeError::InvalidInput`] if a triangle names a position that does not exist or `id` is taken or not below
-    /// 2^26; [`EmbreeError::OutOfMemory`].
+    /// [`EmbreeError::InvalidInput`] if a triangle names a position that does not exist or `id` is taken or
+    /// not below 2^26; [`EmbreeError::OutOfMemory`].
     pub fn add_triangles(
         &mut self,
         id: u32,
@@ -89,13 +91,13 @@ impl SceneBuilder {
 
     /// Adds an instance of `scene`; hits report it as `id`. The instanced scene is shared, not copied.
     ///
-    /// `transform_columns` takes the instance's space to this scene's: three columns of a linear map, then the
-    /// translation. A ray must share a bit with `mask` and with the mask of the mesh inside. A transform that flattens
-    /// space (scale 0) is allowed, but what it holds may then not be hit.
+    /// `transform_columns` takes the instance's space to this scene's: three columns of a linear map, then
+    /// the translation. A ray must share a bit with `mask` and with the mask of the mesh inside. A transform
+    /// that flattens space (scale 0) is allowed, but what it holds may then not be hit.
     ///
     /// # Errors
-    /// [`EmbreeError::InvalidInput`] if the transform is not finite, `scene` is of another device or holds instances
-    /// itself, or `id` is taken or not below 2^26; [`EmbreeError::OutOfMemory`].
+    /// [`EmbreeError::InvalidInput`] if the transform is not finite, `scene` is of another device or holds
+    /// instances itself, or `id` is taken or not below 2^26; [`EmbreeError::OutOfMemory`].
     pub fn add_instance(
         &mut self,
         id: u32,
@@ -117,8 +119,8 @@ impl SceneBuilder {
         self.reserve_id(id)?;
         let geometry = RawGeometry::new(&self.scene.device, sys::GEOMETRY_TYPE_INSTANCE)?;
         let api = &self.scene.device.api;
-        // SAFETY: both handles are alive and of one device; the matrix has the twelve floats the format says and is
-        // copied. Embree takes a reference of its own to the instanced scene.
+        // SAFETY: both handles are alive and of one device; the matrix has the twelve floats the format says
+        // and is copied. Embree takes a reference of its own to the instanced scene.
         unsafe {
             (api.set_instanced_scene)(geometry.handle.as_ptr(), scene.handle());
             (api.set_geometry_transform)(
@@ -135,9 +137,9 @@ impl SceneBuilder {
 
     /// Builds the acceleration structure on the device's threads, and waits for it.
     ///
-    /// `keep_going` is called from the build threads, often and possibly at the same time, with the fraction done (0 to
-    /// 1); returning false stops the build. Very small scenes may be built without a call. A panic in it stops the
-    /// build and continues on the calling thread.
+    /// `keep_going` is called from the build threads, often and possibly at the same time, with the fraction
+    /// done (0 to 1); returning false stops the build. Very small scenes may be built without a call. A panic
+    /// in it stops the build and continues on the calling thread.
     ///
     /// # Errors
     /// [`EmbreeError::Cancelled`] if `keep_going` returned false, [`EmbreeError::OutOfMemory`].
@@ -145,8 +147,8 @@ impl SceneBuilder {
         let progress = BuildProgress { keep_going, panic: Mutex::new(None) };
         let api = &self.scene.device.api;
         let handle = self.scene.handle.as_ptr();
-        // SAFETY: the scene is alive and owned here. `progress` outlives the commit, which returns only when all build
-        // tasks have ended, and the pointer to it is taken back right after.
+        // SAFETY: the scene is alive and owned here. `progress` outlives the commit, which returns only when
+        // all build tasks have ended, and the pointer to it is taken back right after.
         unsafe {
             (api.set_scene_progress)(handle, Some(report_progress), (&raw const progress).cast_mut().cast());
             (api.commit_scene)(handle);
@@ -175,9 +177,9 @@ impl SceneBuilder {
 
     /// Finishes a geometry and puts it into the scene.
     fn attach(&self, id: u32, geometry: &RawGeometry, mask: u32) -> Result<(), EmbreeError> {
-        debug_assert_ne!(id, INVALID_ID);
         let api = &self.scene.device.api;
-        // SAFETY: both handles are alive and of one device; the scene takes a reference of its own to the geometry.
+        // SAFETY: both handles are alive and of one device; the scene takes a reference of its own to the
+        // geometry.
         unsafe {
             (api.set_geometry_mask)(geometry.handle.as_ptr(), mask);
             (api.commit_geometry)(geometry.handle.as_ptr());
@@ -222,15 +224,17 @@ struct RawScene {
     device: Arc<RawDevice>,
 }
 
-// SAFETY: a scene is not tied to the thread that made it. It changes only through `SceneBuilder`, which is not shared.
+// SAFETY: a scene is not tied to the thread that made it. It changes only through `SceneBuilder`, which is
+// not shared.
 unsafe impl Send for RawScene {}
-// SAFETY: through a shared reference only queries, bounds and instancing of a committed scene are reachable, which
-// Embree allows from many threads at once; its reference counts are atomic.
+// SAFETY: through a shared reference only queries, bounds and instancing of a committed scene are reachable,
+// which Embree allows from many threads at once; its reference counts are atomic.
 unsafe impl Sync for RawScene {}
 
 impl Drop for RawScene {
     fn drop(&mut self) {
-        // SAFETY: this is the only owner of the reference, and it is given up once, while the device is still held.
+        // SAFETY: this is the only owner of the reference, and it is given up once, while the device is still
+        // held.
         unsafe { (self.device.api.release_scene)(self.handle.as_ptr()) };
     }
 }
@@ -249,7 +253,8 @@ impl<'a> RawGeometry<'a> {
         Ok(Self { handle: handle.ok_or(EmbreeError::OutOfMemory)?, device })
     }
 
-    /// Copies `items` into a buffer that Embree owns, and pads as it needs: it reads 16 bytes at the last position.
+    /// Copies `items` into a buffer that Embree owns, and pads as it needs: it reads 16 bytes at the last
+    /// position.
     fn copy_buffer<T: Copy>(&self, kind: c_int, format: c_int, items: &[[T; 3]]) -> Result<(), EmbreeError> {
         let stride = size_of::<[T; 3]>();
         // SAFETY: the geometry is alive, and stride and format agree.
@@ -265,7 +270,8 @@ impl<'a> RawGeometry<'a> {
         };
         device::check()?;
         let target = NonNull::new(target).ok_or(EmbreeError::OutOfMemory)?;
-        // SAFETY: Embree has just allocated room for at least `items.len()` items of `stride` bytes, aligned to 16.
+        // SAFETY: Embree has just allocated room for at least `items.len()` items of `stride` bytes, aligned
+        // to 16.
         unsafe { ptr::copy_nonoverlapping(items.as_ptr(), target.as_ptr().cast(), items.len()) };
         Ok(())
     }
@@ -286,8 +292,8 @@ struct BuildProgress<'a> {
 
 /// Embree's progress callback. Lets no panic cross into C++.
 unsafe extern "C" fn report_progress(user: *mut c_void, fraction: f64) -> bool {
-    // SAFETY: `SceneBuilder::commit` set this pointer to a `BuildProgress` that lives until the commit is over, and
-    // which is `Sync`.
+    // SAFETY: `SceneBuilder::commit` set this pointer to a `BuildProgress` that lives until the commit is
+    // over, and which is `Sync`.
     let progress = unsafe { &*user.cast::<BuildProgress<'_>>() };
     match panic::catch_unwind(AssertUnwindSafe(|| (progress.keep_going)(fraction.clamp(0.0, 1.0)))) {
         Ok(keep_going) => keep_going,

@@ -1,7 +1,9 @@
-//! Embree's C interface: constants, structures and the table of entry points, as in the headers of Embree 4.3 and 4.4.
+//! Embree's C interface: constants, structures and the table of entry points, as in the headers of Embree 4.3
+//! and 4.4.
 //!
-//! The structures are those of a library built for one level of instances, which is Embree's default. Whether it was
-//! built with instance arrays does not matter: that only appends `instPrimID` to a hit, and room for it is always there.
+//! The structures are those of a library built for one level of instances, which is Embree's default. Whether
+//! it was built with instance arrays does not matter: that only appends `instPrimID` to a hit, and room for
+//! it is always there.
 
 use std::ffi::{c_char, c_int, c_void};
 
@@ -93,7 +95,8 @@ pub(crate) struct SingleRayHit {
 #[repr(C, align(64))]
 pub(crate) struct ActiveLanes(pub(crate) [c_int; 16]);
 
-/// `RTCIntersectArguments` and `RTCOccludedArguments`, which differ only in the type of a callback not used here.
+/// `RTCIntersectArguments` and `RTCOccludedArguments`, which differ only in the type of a callback not used
+/// here.
 #[repr(C)]
 pub(crate) struct QueryArguments {
     flags: c_int,
@@ -132,9 +135,9 @@ macro_rules! entry_points {
             /// Looks up every entry point; the error is the name of the first that is missing.
             pub(crate) fn load(library: &libloading::Library) -> Result<Self, &'static str> {
                 Ok(Self {
-                    // SAFETY: the types are those of Embree 4's headers, and `Library::open` calls nothing but the
-                    // version query before it has seen that this is Embree 4. The copied pointers stay valid because
-                    // `Library::open` never unloads the library.
+                    // SAFETY: the types are those of Embree 4's headers. Before `Library::open` has seen
+                    // that this is Embree 4 it calls only the device functions, which Embree 3 has, too,
+                    // with the same types. The pointers stay valid: the library is never unloaded.
                     $($field: *unsafe { library.get($symbol) }.map_err(|_| $symbol)?,)*
                 })
             }
@@ -147,7 +150,8 @@ entry_points! {
     release_device = "rtcReleaseDevice": fn(*mut DeviceObject);
     device_property = "rtcGetDeviceProperty": fn(*mut DeviceObject, c_int) -> isize;
     device_error = "rtcGetDeviceError": fn(*mut DeviceObject) -> c_int;
-    set_error_function = "rtcSetDeviceErrorFunction": fn(*mut DeviceObject, Option<ErrorFunction>, *mut c_void);
+    set_error_function = "rtcSetDeviceErrorFunction":
+        fn(*mut DeviceObject, Option<ErrorFunction>, *mut c_void);
 
     new_geometry = "rtcNewGeometry": fn(*mut DeviceObject, c_int) -> *mut GeometryObject;
     release_geometry = "rtcReleaseGeometry": fn(*mut GeometryObject);
@@ -175,4 +179,55 @@ entry_points! {
     intersect16 = "rtcIntersect16":
         fn(*const ActiveLanes, *mut SceneObject, *mut RayHit16, *const QueryArguments);
     occluded16 = "rtcOccluded16": fn(*const ActiveLanes, *mut SceneObject, *mut Ray16, *const QueryArguments);
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::query::Hit16;
+
+    // The numbers were printed by a C program that includes the headers of Embree 4.4.
+
+    #[test]
+    fn single_ray_structures_are_laid_out_as_in_the_headers() {
+        assert_eq!((size_of::<SingleRay>(), align_of::<SingleRay>()), (48, 16));
+        assert_eq!((size_of::<SingleHit>(), align_of::<SingleHit>()), (48, 16));
+        assert_eq!((size_of::<SingleRayHit>(), offset_of!(SingleRayHit, hit)), (96, 48));
+        assert_eq!((offset_of!(SingleRay, origin), offset_of!(SingleRay, t_near)), (0, 12));
+        assert_eq!((offset_of!(SingleRay, direction), offset_of!(SingleRay, time)), (16, 28));
+        assert_eq!((offset_of!(SingleRay, t_far), offset_of!(SingleRay, mask)), (32, 36));
+        assert_eq!((offset_of!(SingleRay, id), offset_of!(SingleRay, flags)), (40, 44));
+        assert_eq!((offset_of!(SingleHit, u), offset_of!(SingleHit, v)), (12, 16));
+        assert_eq!((offset_of!(SingleHit, prim_id), offset_of!(SingleHit, geom_id)), (20, 24));
+        assert_eq!((offset_of!(SingleHit, inst_id), offset_of!(SingleHit, inst_prim_id)), (28, 32));
+    }
+
+    #[test]
+    fn packet_structures_are_laid_out_as_in_the_headers() {
+        assert_eq!((size_of::<Ray16>(), align_of::<Ray16>()), (768, 64));
+        assert_eq!((size_of::<Hit16>(), align_of::<Hit16>()), (576, 64));
+        assert_eq!((size_of::<RayHit16>(), offset_of!(RayHit16, hit)), (1344, 768));
+        assert_eq!((size_of::<ActiveLanes>(), align_of::<ActiveLanes>()), (64, 64));
+        assert_eq!((offset_of!(Ray16, t_near), offset_of!(Ray16, dir_x)), (192, 256));
+        assert_eq!((offset_of!(Ray16, time), offset_of!(Ray16, t_far)), (448, 512));
+        assert_eq!(
+            (offset_of!(Ray16, mask), offset_of!(Ray16, id), offset_of!(Ray16, flags)),
+            (576, 640, 704)
+        );
+        assert_eq!((offset_of!(Hit16, ng_y), offset_of!(Hit16, u), offset_of!(Hit16, v)), (64, 192, 256));
+        assert_eq!((offset_of!(Hit16, prim_id), offset_of!(Hit16, geom_id)), (320, 384));
+        assert_eq!((offset_of!(Hit16, inst_id), offset_of!(Hit16, inst_prim_id)), (448, 512));
+    }
+
+    #[test]
+    fn bounds_and_arguments_are_laid_out_as_in_the_headers() {
+        assert_eq!((size_of::<Bounds>(), align_of::<Bounds>()), (32, 16));
+        assert_eq!((offset_of!(Bounds, lower), offset_of!(Bounds, upper)), (0, 16));
+        assert_eq!((size_of::<QueryArguments>(), offset_of!(QueryArguments, feature_mask)), (40, 4));
+        assert_eq!((offset_of!(QueryArguments, context), offset_of!(QueryArguments, filter)), (8, 16));
+        assert_eq!(offset_of!(QueryArguments, user_geometry), 24);
+        assert_eq!(offset_of!(QueryArguments, min_width_distance_factor), 32);
+    }
 }

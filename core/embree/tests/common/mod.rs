@@ -6,7 +6,8 @@ use std::process::Command;
 
 use rgp_embree::{BuildQuality, CommittedScene, Device, Library, Ray, SceneBuilder};
 
-/// The library named by `RGP_EMBREE_LIBRARY`, else the one of the `embreex` package of the `python3` on the path.
+/// The library named by `RGP_EMBREE_LIBRARY`, else the one of the `embreex` package of the `python3` on the
+/// path.
 pub(crate) fn library_path() -> PathBuf {
     if let Some(path) = std::env::var_os("RGP_EMBREE_LIBRARY") {
         return path.into();
