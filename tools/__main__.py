@@ -1,0 +1,129 @@
+"""The commands behind the Makefile: `python3 -m tools render | test | lint | bench | extension | clean`."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import sys
+import time
+from pathlib import Path
+
+from tools.environment import (
+    CORE,
+    VENVS,
+    build_core,
+    embree_library,
+    install_core,
+    make_blender,
+    make_tools,
+    python_of,
+)
+from tools.machine import PYTHON_OF_BPY, ROOT, Command, available_bpys, check_compiler, require, run, say
+
+OUT = ROOT / "out"
+
+
+def render(options: argparse.Namespace) -> None:
+    """Renders one scene with the newest Blender the machine allows."""
+    python = make_blender(available_bpys(options.bpy)[-1])
+    scene = Path(options.scene)
+    OUT.mkdir(exist_ok=True)
+    target = str(OUT / scene.stem)
+    files = ["-o", f"{target}.exr", "--png", f"{target}.png", "--stats", f"{target}.json"]
+    require([python, "-m", "rgp_engine", "render", scene, *files, *options.more])
+
+
+def test(options: argparse.Namespace) -> None:
+    """Rust tests, then Python tests: all of them on the newest Blender, the quicker ones on every other."""
+    bpys = available_bpys(options.bpy)
+    for bpy in bpys:
+        make_blender(bpy)
+    failed = []
+    embree = str(embree_library(f"bpy-{bpys[-1]}"))
+    if timed("cargo test", ["cargo", "test", "--workspace", "--locked"], CORE, RGP_EMBREE_LIBRARY=embree):
+        failed.append("cargo test")
+    for bpy in reversed(bpys):
+        selection = ["tests"] if bpy == bpys[-1] else ["tests/blender", "tests/render", "-m", "not slow"]
+        pytest = [python_of(f"bpy-{bpy}"), "-m", "pytest", *selection, *options.more]
+        if timed(f"pytest with bpy {bpy}", pytest, ROOT, RGP_EXPECTED_BPY=bpy):
+            failed.append(f"pytest with bpy {bpy}")
+    if failed:
+        sys.exit(f"error: failed: {', '.join(failed)}")
+    say(f"every test passed: cargo test, and pytest with bpy {', '.join(bpys)}")
+
+
+def timed(name: str, command: Command, directory: Path, **variables: str) -> int:
+    """Runs a test command and prints its time; its exit code."""
+    say(name)
+    start = time.monotonic()
+    code = run(command, directory, **variables)
+    say(
+        f"{name}: {'passed' if code == 0 else f'failed with code {code}'} in {time.monotonic() - start:.0f} s"
+    )
+    return code
+
+
+def lint(_options: argparse.Namespace) -> None:
+    """Everything that reads the code without running it, and the stub against the binary."""
+    tools = make_tools()
+    check_compiler()
+    install_core("tools", build_core())
+    checks: list[tuple[Command, Path]] = [
+        (["cargo", "fmt", "--all", "--check"], CORE),
+        (["cargo", "clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"], CORE),
+        ([tools, "-m", "ruff", "check", "."], ROOT),
+        ([tools, "-m", "ruff", "format", "--check", "."], ROOT),
+        ([tools, "-m", "mypy"], ROOT),
+        ([tools, "-m", "mypy.stubtest", "rgp_core"], VENVS),
+        ([tools, "-m", "tools.check_layers"], ROOT),
+    ]
+    failed = [
+        " ".join(map(str, command[:4])) for command, directory in checks if run(command, directory) != 0
+    ]
+    if failed:
+        sys.exit("error: failed:\n  " + "\n  ".join(failed))
+    say(f"lint: {len(checks)} checks passed")
+
+
+def bench(options: argparse.Namespace) -> None:
+    """Measures speed, prints it and writes `out/bench.json`."""
+    python = make_blender(available_bpys(options.bpy)[-1])
+    OUT.mkdir(exist_ok=True)
+    require([python, "-m", "benchmarks", "-o", OUT / "bench.json", *options.more])
+
+
+def extension(options: argparse.Namespace) -> None:
+    """Builds the Blender extension with the wheels for one Python inside."""
+    bpy = available_bpys(options.bpy)[-1]
+    python = make_blender(bpy)
+    require([python, "-m", "tools.extension", build_core(), options.python or PYTHON_OF_BPY[bpy]])
+
+
+def clean(_options: argparse.Namespace) -> None:
+    """Removes everything that the other commands made."""
+    for folder in (VENVS, OUT, ROOT / "dist", Path(os.environ.get("CARGO_TARGET_DIR", CORE / "target"))):
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def main() -> None:
+    """Reads the command line and runs one command."""
+    parser = argparse.ArgumentParser(prog="python3 -m tools", description=__doc__)
+    commands = parser.add_subparsers(dest="command", required=True)
+    for command in (render, test, lint, bench, extension, clean):
+        subparser = commands.add_parser(command.__name__, help=command.__doc__)
+        subparser.set_defaults(run=command)
+        subparser.add_argument(
+            "--bpy", type=lambda text: text or None, help="a version such as 5.0.1; default: the newest here"
+        )
+        if command is render:
+            subparser.add_argument("--scene", default="scenes/cornell_box.blend")
+        if command is extension:
+            subparser.add_argument("--python", help="the Python of the Blender it is for, such as 3.13")
+    options, more = parser.parse_known_args()
+    options.more = more
+    options.run(options)
+
+
+if __name__ == "__main__":
+    main()
