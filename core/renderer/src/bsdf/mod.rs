@@ -1,1 +1,307 @@
-//! placeholder
+//! Surface scattering. The contract, for everything that traces rays:
+//!
+//! - `wo` is known and points to where the ray came from; `wi` is sampled. Both leave the surface, are unit vectors and
+//!   live in scene space. A [`Bsdf`] is made for one `wo` and keeps it.
+//! - `eval` gives the BSDF f (sr⁻¹) without the cosine; `sample` gives weight = f · |cos| / pdf.
+//! - `ng` is the geometric normal, `ns` the shading normal; in a [`ShadingFrame`] both are on the side of `wo`. Cosines are
+//!   with `ns`; nothing is reflected below `ng` or refracted above it.
+//! - Lobes fall into classes, see [`LobeSet`]; every question can be put to some of them.
+//! - Radiance is what Cycles calls radiance: inside a medium of index n it is divided by n². It does not change where light
+//!   is refracted, and closed glass looks right from outside. In [`TransportMode::Importance`] (photons; `wo` is where the
+//!   photon came from) values are the exact adjoint, f(wi, wo): a photon's flux is divided by η² on entering and multiplied
+//!   on leaving, so that irradiance stored anywhere is what the radiance mode would gather. Shading normals get Veach's
+//!   correction (1997, section 5.3.2) for the same reason.
+
+mod dielectric;
+mod energy_table;
+mod fresnel;
+mod ggx;
+mod lobe;
+mod material;
+mod principled;
+mod reflection;
+mod sanitize;
+
+use std::ops::BitOr;
+
+use arrayvec::ArrayVec;
+use glam::Vec3;
+
+use crate::color::Rgb;
+use lobe::Lobe;
+pub use lobe::{DELTA_ALPHA, ROUGH_ALPHA};
+pub use material::{MaterialTable, PreparedMaterial};
+
+/// Most lobes at one hit.
+const MAX_LOBES: usize = 16;
+
+type LobeList = ArrayVec<Lobe, MAX_LOBES>;
+
+/// A set of lobe classes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LobeSet(u8);
+
+impl LobeSet {
+    /// No class.
+    pub const EMPTY: Self = Self(0);
+    /// Lambert reflection.
+    pub const DIFFUSE: Self = Self(1);
+    /// GGX reflection with alpha of [`ROUGH_ALPHA`] and above: read from direction bins.
+    pub const ROUGH: Self = Self(2);
+    /// GGX reflection below [`ROUGH_ALPHA`], and rough transmission.
+    pub const SHARP: Self = Self(4);
+    /// Mirror reflection and smooth refraction.
+    pub const DELTA: Self = Self(8);
+    /// Every class with a finite density.
+    pub const NON_DELTA: Self = Self(7);
+    /// Every class.
+    pub const ALL: Self = Self(15);
+
+    /// True when the sets have a class in common.
+    #[must_use]
+    pub const fn intersects(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    /// True when every class of `other` is in this set.
+    #[must_use]
+    pub const fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// The classes of this set that are not in `other`.
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+}
+
+impl BitOr for LobeSet {
+    type Output = Self;
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+/// What travels along the path, from `wi` to `wo` or from `wo` to `wi`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TransportMode {
+    /// Radiance arrives from `wi`: paths from the camera.
+    Radiance,
+    /// Flux arrives from `wo`: photons.
+    Importance,
+}
+
+/// Normals at a hit, on the side of `wo`.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadingFrame {
+    /// Shading normal; bent where needed so that `wo` is above it.
+    pub ns: Vec3,
+    /// Geometric normal.
+    pub ng: Vec3,
+    /// True when `wo` is on the front side, so that light going through enters the object.
+    pub entering: bool,
+}
+
+impl ShadingFrame {
+    /// Turns both normals to the side of `wo` that the geometric one says.
+    #[must_use]
+    pub fn new(wo: Vec3, ng: Vec3, ns: Vec3) -> Self {
+        const GRAZING: f32 = 0.01;
+        let cos_g = wo.dot(ng);
+        let entering = cos_g >= 0.0;
+        let sign = if entering { 1.0 } else { -1.0 };
+        let (ng, mut ns) = (ng * sign, ns * sign);
+        let cos_normals = ns.dot(ng);
+        if cos_normals <= 0.0 || cos_normals.is_nan() {
+            ns = ng;
+        }
+        let (cos, least) = (wo.dot(ns), (cos_g * sign).min(GRAZING));
+        if cos < least {
+            ns = (ns + wo * (least - cos)).normalize();
+        }
+        Self { ns, ng, entering }
+    }
+
+    /// Flux of a photon from `wo` times this is what to store for an irradiance that belongs to the shading normal, as
+    /// radiance paths see it: |wo·ns| / |wo·ng|.
+    #[must_use]
+    pub fn irradiance_factor(&self, wo: Vec3) -> f32 {
+        wo.dot(self.ns).abs() / wo.dot(self.ng).abs().max(1e-3)
+    }
+
+    /// The normals as they were before turning them.
+    fn unturned(&self) -> [Vec3; 2] {
+        if self.entering { [self.ng, self.ns] } else { [-self.ng, -self.ns] }
+    }
+}
+
+/// A sampled direction.
+#[derive(Clone, Copy, Debug)]
+pub struct BsdfSample {
+    /// The direction.
+    pub wi: Vec3,
+    /// f · |cos| / pdf, over every lobe asked for that could have made `wi`.
+    pub weight: Rgb,
+    /// Density per solid angle; the chance of its lobe where that is a delta.
+    pub pdf_solid_angle: f32,
+    /// Class of the lobe that was chosen, a single bit.
+    pub class: LobeSet,
+    /// True when the direction comes from a delta lobe: `eval` and `pdf` know nothing of it.
+    pub is_delta: bool,
+    /// True when `wi` is on the other side of the surface.
+    pub is_transmission: bool,
+    /// Squared index on the side of `wi` over that on the side of `wo`; 1 for reflection. The product along a photon's path
+    /// times its weight is free of the η² of refraction: decide on Russian roulette by that.
+    pub eta_squared: f32,
+}
+
+/// The BSDF at one hit for one `wo`, made by [`PreparedMaterial::bsdf`].
+#[derive(Clone, Debug)]
+pub struct Bsdf<'a> {
+    material: &'a PreparedMaterial,
+    wo: Vec3,
+    lobes: LobeList,
+    /// Radiance emitted towards `wo` (W·m⁻²·sr⁻¹).
+    pub emission: Rgb,
+    /// Share of light that passes straight through.
+    pub transparency: Rgb,
+    /// Normals.
+    pub frame: ShadingFrame,
+}
+
+impl Bsdf<'_> {
+    fn lobes(&self, set: LobeSet) -> impl Iterator<Item = &Lobe> {
+        self.lobes.iter().filter(move |lobe| lobe.class.intersects(set))
+    }
+
+    /// True when a lobe of `set` is there.
+    #[must_use]
+    pub fn has(&self, set: LobeSet) -> bool {
+        self.lobes(set).next().is_some()
+    }
+
+    /// Share of light arriving uniformly from everywhere that the lobes of `set` send to `wo`.
+    #[must_use]
+    pub fn albedo(&self, set: LobeSet) -> Rgb {
+        self.lobes(set).map(|lobe| lobe.albedo).sum()
+    }
+
+    /// What irradiance (W·m⁻²) on this side, divided by π, is multiplied with to get the radiance towards `wo` of the
+    /// diffuse lobes.
+    #[must_use]
+    pub fn diffuse_albedo(&self) -> Rgb {
+        self.albedo(LobeSet::DIFFUSE)
+    }
+
+    /// The BSDF (sr⁻¹) of the lobes of `set` for `wi`, without the cosine; delta lobes give nothing.
+    #[must_use]
+    pub fn eval(&self, wi: Vec3, set: LobeSet, mode: TransportMode) -> Rgb {
+        match mode {
+            TransportMode::Radiance => self.eval_with_pdf(wi, set).0,
+            TransportMode::Importance => {
+                self.adjoint(wi).eval_with_pdf(self.wo, set).0 * self.shading_correction(wi)
+            }
+        }
+    }
+
+    /// Density per solid angle of `sample` restricted to `set`, at `wi`; delta lobes count as not being `wi`.
+    #[must_use]
+    pub fn pdf(&self, wi: Vec3, set: LobeSet) -> f32 {
+        self.eval_with_pdf(wi, set).1
+    }
+
+    /// Value in radiance mode and density.
+    fn eval_with_pdf(&self, wi: Vec3, set: LobeSet) -> (Rgb, f32) {
+        let (side_s, side_g) = (wi.dot(self.frame.ns), wi.dot(self.frame.ng));
+        let (above, below) = (side_s > 0.0 && side_g > 0.0, side_s < 0.0 && side_g < 0.0);
+        let (mut value, mut pdf, mut total) = (Rgb::BLACK, 0.0, 0.0);
+        if !(above || below) || self.wo.dot(self.frame.ns) <= 0.0 {
+            return (value, pdf);
+        }
+        for lobe in self.lobes(set) {
+            let chance = lobe.albedo.mean();
+            total += chance;
+            if lobe.class != LobeSet::DELTA && lobe.is_transmission() == below {
+                let (f, p) = lobe.eval(&self.frame, self.wo, wi);
+                value += f;
+                pdf += p * chance;
+            }
+        }
+        (value, if total > 0.0 { pdf / total } else { 0.0 })
+    }
+
+    /// A direction of the lobes of `set`: `u_lobe` in [0, 1) chooses the lobe by albedo, `u` in [0, 1)² the direction. `None`
+    /// where there is no such lobe or the direction falls on the wrong side, which is part of the estimate: its value is 0.
+    #[must_use]
+    pub fn sample(&self, u_lobe: f32, u: [f32; 2], set: LobeSet, mode: TransportMode) -> Option<BsdfSample> {
+        let total: f32 = self.lobes(set).map(|lobe| lobe.albedo.mean()).sum();
+        let (lobe, chance) = self.choose(u_lobe * total, set)?;
+        let wi = lobe.sample(&self.frame, self.wo, u)?;
+        let (side_s, side_g) = (wi.dot(self.frame.ns), wi.dot(self.frame.ng));
+        let is_transmission = lobe.is_transmission();
+        if (side_s < 0.0) != is_transmission || (side_g < 0.0) != is_transmission {
+            return None;
+        }
+        let is_delta = lobe.class == LobeSet::DELTA;
+        let (weight, pdf_solid_angle) = if is_delta {
+            let chance = chance / total;
+            (self.delta_value(lobe, wi, mode) / chance, chance)
+        } else {
+            let (mut value, pdf) = self.eval_with_pdf(wi, set);
+            if mode == TransportMode::Importance {
+                value = self.eval(wi, set, mode);
+            }
+            (value * (side_s.abs() / pdf), pdf)
+        };
+        let usable = weight.is_finite() && !weight.is_black() && pdf_solid_angle > 0.0;
+        usable.then(|| BsdfSample {
+            wi,
+            weight,
+            pdf_solid_angle,
+            class: lobe.class,
+            is_delta,
+            is_transmission,
+            eta_squared: lobe.eta() * lobe.eta(),
+        })
+    }
+
+    /// The lobe of `set` whose interval of summed albedos holds `position`, and the interval's length.
+    fn choose(&self, position: f32, set: LobeSet) -> Option<(&Lobe, f32)> {
+        let mut last = None;
+        let mut below = 0.0;
+        for lobe in self.lobes(set) {
+            let chance = lobe.albedo.mean();
+            if chance > 0.0 {
+                last = Some((lobe, chance));
+                below += chance;
+                if position < below {
+                    break;
+                }
+            }
+        }
+        last
+    }
+
+    /// Weight of a delta lobe, its chance aside.
+    fn delta_value(&self, lobe: &Lobe, wi: Vec3, mode: TransportMode) -> Rgb {
+        if mode == TransportMode::Radiance {
+            return lobe.delta_factor(&self.frame, self.wo);
+        }
+        let adjoint = self.adjoint(wi);
+        let back = adjoint.lobes.iter().find(|other| other.slot == lobe.slot);
+        let value = back.map_or(Rgb::BLACK, |back| back.delta_factor(&adjoint.frame, wi));
+        value * (self.shading_correction(wi) / (lobe.eta() * lobe.eta()))
+    }
+
+    /// The same hit seen from `wi`.
+    fn adjoint(&self, wi: Vec3) -> Self {
+        let [ng, ns] = self.frame.unturned();
+        self.material.bsdf(wi, ng, ns)
+    }
+
+    /// What photons need where shading and geometric normal differ: |wo·ns| |wi·ng| / (|wo·ng| |wi·ns|).
+    fn shading_correction(&self, wi: Vec3) -> f32 {
+        self.frame.irradiance_factor(self.wo) / self.frame.irradiance_factor(wi).max(1e-3)
+    }
+}

@@ -1,0 +1,181 @@
+//! Blender's Principled BSDF (Blender 4.0 and later) as a stack of lobes, from the top: coat, metal, glass, specular
+//! layer, diffuse. Every layer dims those below by an estimate of what it reflects.
+
+use super::dielectric::Glass;
+use super::lobe::Lobe;
+use super::reflection::{Layer, Metal, Roughness};
+use super::{LobeList, LobeSet, fresnel};
+use crate::color::Rgb;
+use crate::scene::record::PrincipledRecord;
+
+/// Shares below this are left out, as in Cycles.
+const NEGLIGIBLE: f32 = 1e-5;
+
+/// Most lobes one Principled BSDF makes.
+pub(super) const LOBES: usize = 6;
+
+/// A Principled BSDF without its alpha, its parameters checked and converted.
+#[derive(Clone, Debug)]
+pub(super) struct Principled {
+    /// Radiance, as seen through the coat.
+    pub(super) emission: Rgb,
+    base_color: Rgb,
+    coat: Option<Coat>,
+    metallic: f32,
+    metal: Metal,
+    transmission: f32,
+    glass: Glass,
+    /// `None` where the index is exactly 1.
+    specular: Option<Layer>,
+}
+
+/// The coat and the tint of what is seen through it.
+#[derive(Clone, Debug)]
+struct Coat {
+    weight: f32,
+    ior: f32,
+    layer: Option<Layer>,
+    tint: Rgb,
+}
+
+impl Principled {
+    /// From sockets already within their ranges.
+    pub(super) fn new(record: &PrincipledRecord) -> Self {
+        let rough = Roughness::new(record.roughness);
+        let ior = record.ior;
+        let plain_f0 = fresnel::f0_from_ior(ior);
+        let (mut f0, mut eta) = (plain_f0, ior);
+        if (record.specular_ior_level - 0.5).abs() > f32::EPSILON {
+            f0 *= 2.0 * record.specular_ior_level;
+            eta = fresnel::ior_from_f0(f0);
+            if ior < 1.0 {
+                eta = 1.0 / eta;
+            }
+        }
+        let tinted = |f0: f32| (record.specular_tint * f0).map(|c| c.min(1.0));
+        let coat_layer = Layer {
+            eta: record.coat_ior,
+            f0: Rgb::splat(fresnel::f0_from_ior(record.coat_ior)),
+            rough: Roughness::new(record.coat_roughness),
+        };
+        Self {
+            emission: record.emission_color * record.emission_strength,
+            base_color: record.base_color,
+            coat: (record.coat_weight > NEGLIGIBLE).then(|| Coat {
+                weight: record.coat_weight,
+                ior: record.coat_ior,
+                layer: (record.coat_ior > 1.0).then_some(coat_layer),
+                tint: record.coat_tint,
+            }),
+            metallic: record.metallic,
+            metal: Metal {
+                f0: record.base_color,
+                dip: fresnel::metal_dip(record.base_color, record.specular_tint.map(|c| c.min(1.0))),
+            },
+            transmission: record.transmission_weight,
+            glass: Glass {
+                ior,
+                f0: tinted(plain_f0),
+                reflection_tint: Rgb::WHITE,
+                transmission_tint: record.base_color.map(f32::sqrt),
+                rough,
+            },
+            specular: (eta != 1.0).then(|| Layer { eta, f0: tinted(f0), rough }),
+        }
+    }
+
+    /// The albedo where nothing but a diffuse lobe is left.
+    pub(super) fn lambert(&self) -> Option<Rgb> {
+        let bare = self.coat.is_none() && self.metallic <= NEGLIGIBLE && self.transmission <= NEGLIGIBLE;
+        (bare && self.specular.is_none()).then_some(self.base_color)
+    }
+
+    /// Shares of metal, glass and the layered diffuse base, without the coat.
+    fn shares(&self) -> [f32; 3] {
+        let rest = 1.0 - self.metallic;
+        [self.metallic, rest * self.transmission, rest * (1.0 - self.transmission)]
+    }
+
+    /// Classes that can occur.
+    pub(super) fn classes(&self) -> LobeSet {
+        let mut set = LobeSet::EMPTY;
+        if let Some(layer) = self.coat.as_ref().and_then(|coat| coat.layer) {
+            set = set | layer.rough.reflection_class();
+        }
+        let [metal, glass, base] = self.shares();
+        if metal > NEGLIGIBLE {
+            set = set | self.glass.rough.reflection_class();
+        }
+        if glass > NEGLIGIBLE {
+            set = set | self.glass.classes();
+        }
+        if base > NEGLIGIBLE {
+            if let Some(layer) = self.specular {
+                set = set | layer.rough.reflection_class();
+            }
+            if !self.base_color.is_black() {
+                set = set | LobeSet::DIFFUSE;
+            }
+        }
+        set
+    }
+
+    /// Indices of refraction the energy tables will be asked for.
+    pub(super) fn etas(&self) -> impl Iterator<Item = f32> {
+        let coat = self.coat.as_ref().and_then(|coat| coat.layer).map(|layer| layer.eta);
+        let specular = self.specular.map(|layer| layer.eta);
+        let glass = (self.transmission > NEGLIGIBLE).then_some(self.glass.ior);
+        [coat, specular, glass].into_iter().flatten()
+    }
+
+    /// Colors at normal incidence of the rough reflections, weighted by their shares.
+    pub(super) fn rough_tint(&self) -> Rgb {
+        let mut tint = Rgb::BLACK;
+        if let Some((coat, layer)) = self.coat.as_ref().and_then(|coat| Some((coat, coat.layer?)))
+            && layer.rough.reflection_class() == LobeSet::ROUGH
+        {
+            tint += layer.f0 * coat.weight;
+        }
+        if self.glass.rough.reflection_class() == LobeSet::ROUGH {
+            let [metal, glass, base] = self.shares();
+            tint += self.metal.f0 * metal + self.glass.f0 * glass;
+            tint += self.specular.map_or(Rgb::BLACK, |layer| layer.f0 * base);
+        }
+        tint
+    }
+
+    /// Adds the lobes, and returns what part of the emission leaves towards the viewer at `cos` from the normal.
+    pub(super) fn push(&self, lobes: &mut LobeList, weight: Rgb, entering: bool, cos: f32, slot: u8) -> Rgb {
+        let below_coat = self.push_coat(lobes, weight, cos, slot);
+        let [metal, glass, base] = self.shares();
+        let weight = weight * below_coat;
+        if metal > NEGLIGIBLE {
+            self.metal.push(lobes, weight * metal, self.glass.rough, cos, slot + 1);
+        }
+        if glass > NEGLIGIBLE {
+            self.glass.push(lobes, weight * glass, entering, cos, slot + 2);
+        }
+        if base > NEGLIGIBLE {
+            let through = match self.specular {
+                Some(layer) => layer.push(lobes, weight * base, 1.0, cos, slot + 4),
+                None => 1.0,
+            };
+            if !self.base_color.is_black() {
+                lobes.push(Lobe::lambert(weight * self.base_color * (base * through), slot + 5));
+            }
+        }
+        below_coat
+    }
+
+    /// Adds the coat, and returns what part of the light reaches what lies below and comes back tinted. The path through
+    /// the coat follows Beer's law along the refracted view direction, normalized to normal incidence.
+    fn push_coat(&self, lobes: &mut LobeList, weight: Rgb, cos: f32, slot: u8) -> Rgb {
+        let Some(coat) = &self.coat else { return Rgb::WHITE };
+        let through = match coat.layer {
+            Some(layer) => layer.push(lobes, weight, coat.weight, cos, slot),
+            None => 1.0,
+        };
+        let depth = 1.0 / fresnel::cos_refracted(cos, coat.ior).map_or(1e-3, |c| c.max(1e-3));
+        Rgb::WHITE.lerp(coat.tint.map(|c| c.powf(depth)), coat.weight) * through
+    }
+}

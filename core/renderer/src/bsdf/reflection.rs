@@ -1,0 +1,129 @@
+//! Lobes of GGX reflection: constant reflectance (Glossy BSDF), metal, and a dielectric layer over something else.
+
+use super::energy_table::{self, compensation};
+use super::fresnel;
+use super::lobe::{self, Fresnel, Lobe, Shape};
+use super::{LobeList, LobeSet};
+use crate::color::Rgb;
+
+/// Microfacet roughness: Blender's, and the GGX alpha it stands for. Both are zero where the lobe is a delta, so that
+/// tables and class agree.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Roughness {
+    /// Blender's roughness.
+    pub(super) roughness: f32,
+    /// GGX alpha.
+    pub(super) alpha: f32,
+}
+
+impl Roughness {
+    /// From Blender's roughness, 0 to 1.
+    pub(super) fn new(roughness: f32) -> Self {
+        let alpha = roughness * roughness;
+        if alpha <= lobe::DELTA_ALPHA {
+            Self { roughness: 0.0, alpha: 0.0 }
+        } else {
+            Self { roughness, alpha }
+        }
+    }
+
+    /// Class of a reflection.
+    pub(super) fn reflection_class(self) -> LobeSet {
+        lobe::reflection_class(self.alpha)
+    }
+}
+
+/// Reflection of `color`, the same at every angle.
+pub(super) fn push_constant(
+    lobes: &mut LobeList,
+    weight: Rgb,
+    color: Rgb,
+    rough: Roughness,
+    cos: f32,
+    slot: u8,
+) {
+    let table = energy_table::reflection(rough.roughness, cos);
+    let weight = weight * color * compensation(table.total, table.mean, color);
+    lobes.push(Lobe {
+        shape: Shape::Reflection { alpha: rough.alpha },
+        fresnel: Fresnel::Full,
+        weight,
+        albedo: weight * table.total,
+        class: rough.reflection_class(),
+        slot,
+    });
+}
+
+/// Reflection of a metal, see [`fresnel::metal`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Metal {
+    /// Reflectance at normal incidence.
+    pub(super) f0: Rgb,
+    /// Dip towards grazing.
+    pub(super) dip: Rgb,
+}
+
+impl Metal {
+    /// Adds the lobe.
+    pub(super) fn push(self, lobes: &mut LobeList, weight: Rgb, rough: Roughness, cos: f32, slot: u8) {
+        let table = energy_table::reflection(rough.roughness, cos);
+        let fss = fresnel::metal_mean(self.f0, self.dip);
+        let weight = weight * compensation(table.total, table.mean, fss);
+        let schlick = self.f0 * (table.total - table.schlick) + Rgb::splat(table.schlick);
+        let single = (schlick - self.dip * table.dent).map(|c| c.max(0.0));
+        lobes.push(Lobe {
+            shape: Shape::Reflection { alpha: rough.alpha },
+            fresnel: Fresnel::Metal { f0: self.f0, dip: self.dip },
+            weight,
+            albedo: weight * single,
+            class: rough.reflection_class(),
+            slot,
+        });
+    }
+}
+
+/// A dielectric coating: it reflects by Fresnel, and what lies below gets the rest.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layer {
+    /// Index of refraction, the same from both sides.
+    pub(super) eta: f32,
+    /// Reflectance at normal incidence.
+    pub(super) f0: Rgb,
+    /// Roughness.
+    pub(super) rough: Roughness,
+}
+
+impl Layer {
+    /// Adds the lobe and returns what part of the light reaches what lies below.
+    pub(super) fn push(self, lobes: &mut LobeList, weight: Rgb, share: f32, cos: f32, slot: u8) -> f32 {
+        let Self { eta, f0, rough } = self;
+        let reflection = energy_table::reflection(rough.roughness, cos);
+        let table = energy_table::dielectric(rough.roughness, cos, eta);
+        let (rise, layer) = match rough.reflection_class() {
+            LobeSet::DELTA => {
+                let rise = fresnel::dielectric_rise(cos, eta);
+                (rise, rise)
+            }
+            _ => (table.rise, table.layer),
+        };
+        let fss = f0.lerp(Rgb::WHITE, mean_rise(eta));
+        let gain = compensation(reflection.total, reflection.mean, fss);
+        let scaled = weight * gain * share;
+        lobes.push(Lobe {
+            shape: Shape::Reflection { alpha: rough.alpha },
+            fresnel: Fresnel::Dielectric { f0, eta },
+            weight: scaled,
+            albedo: scaled * (f0 * (reflection.total - rise) + Rgb::splat(rise)),
+            class: rough.reflection_class(),
+            slot,
+        });
+        let estimate = f0.lerp(Rgb::WHITE, layer) * gain * (reflection.total * share);
+        (1.0 - estimate.max_channel()).clamp(0.0, 1.0)
+    }
+}
+
+/// Cosine-weighted mean of [`fresnel::dielectric_rise`].
+fn mean_rise(eta: f32) -> f32 {
+    let f0 = fresnel::f0_from_ior(eta);
+    ((fresnel::dielectric_mean(eta) - f0) / (1.0 - f0)).clamp(0.0, 1.0)
+}
