@@ -128,6 +128,7 @@ def add_local_version(wheel: Path, local: str, folder: Path) -> Path:
     name, version, tags = wheel.name.split("-", 2)
     renamed = f"{version}+{local}"
     old_info, new_info = f"{name}-{version}.dist-info/", f"{name}-{renamed}.dist-info/"
+    folder.mkdir(parents=True, exist_ok=True)
     copy = folder / f"{name}-{renamed}-{tags}"
     records = []
     with zipfile.ZipFile(wheel) as source, zipfile.ZipFile(copy, "w", zipfile.ZIP_DEFLATED) as target:
