@@ -1,0 +1,29 @@
+"""`python -m rgp_engine`: the command line."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from .cli import CommandError, compare, render
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs one command. Returns the exit code: 0 done, 1 failed, 2 asked for something that does not exist."""
+    parser = argparse.ArgumentParser(
+        prog="python -m rgp_engine",
+        description="Render Blender files without Blender's window, and compare pictures.",
+    )
+    commands = parser.add_subparsers(dest="command", required=True)
+    render.add_arguments(commands)
+    compare.add_arguments(commands)
+    options = parser.parse_args(arguments)
+    try:
+        options.run(options)
+    except CommandError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return error.exit_code
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,84 @@
+"""Blender's camera and render border."""
+
+from typing import Any
+
+import numpy as np
+
+from ..report import UserError
+from .context import ExportContext
+
+
+def camera_record(context: ExportContext) -> dict[str, Any]:
+    """The active camera as the core's CameraRecord, less `region`. Raises UserError without camera."""
+    engine = context.engine
+    b_scene = context.b_depsgraph.scene_eval
+    b_object = engine.camera_override or b_scene.camera
+    if b_object is None or b_object.type != "CAMERA":
+        raise UserError(
+            "There is no camera. Add one (Add > Camera) and make it the active camera of the scene"
+        )
+    b_camera = b_object.data
+    _report_unsupported(b_object.name, b_camera, context)
+    resolution = (engine.resolution_x, engine.resolution_y)
+    aspect = (b_scene.render.pixel_aspect_x, b_scene.render.pixel_aspect_y)
+    shift = (engine.camera_shift_x(b_object), b_camera.shift_y)
+    is_orthographic = b_camera.type == "ORTHO"
+    return {
+        "name": b_object.name,
+        "projection": "orthographic" if is_orthographic else "perspective",
+        "world_from_camera": np.array(engine.camera_model_matrix(b_object)).reshape(4, 4).tolist(),
+        "window": camera_window(b_camera, resolution, aspect, shift),
+        "resolution": list(resolution),
+        "clip": [b_camera.clip_start, b_camera.clip_end],
+    }
+
+
+def camera_window(
+    b_camera: Any,
+    resolution: tuple[int, int],
+    aspect: tuple[float, float],
+    shift: tuple[float, float],
+) -> list[float]:
+    """Left, right, bottom and top of the full frame at distance 1 (perspective) or in metres (orthographic).
+
+    The sensor spans the longer side of the frame, or the side that sensor fit names; shifts are fractions of that side.
+    """
+    width, height = resolution[0] * aspect[0], resolution[1] * aspect[1]
+    fit = b_camera.sensor_fit
+    spans_width = width >= height if fit == "AUTO" else fit == "HORIZONTAL"
+    if b_camera.type == "ORTHO":
+        span = b_camera.ortho_scale
+    else:
+        sensor = b_camera.sensor_height if fit == "VERTICAL" else b_camera.sensor_width
+        span = sensor / b_camera.lens
+    pixel = span / (width if spans_width else height)
+    half_width, half_height = 0.5 * width * pixel, 0.5 * height * pixel
+    shift_x, shift_y = shift[0] * span, shift[1] * span
+    return [
+        shift_x - half_width,
+        shift_x + half_width,
+        shift_y - half_height,
+        shift_y + half_height,
+    ]
+
+
+def render_region(
+    resolution: list[int], border: tuple[float, float] | None, size: tuple[int, int]
+) -> list[int]:
+    """Rendered part of the frame in pixels: x, y (from the bottom left), width, height.
+
+    The size is the render result's, which Blender has worked out; the corner is rounded as Blender does, in single
+    precision.
+    """
+    if border is None:
+        return [0, 0, *size]
+    x, y = (int(np.float32(part) * np.float32(full)) for part, full in zip(border, resolution))
+    return [min(x, resolution[0] - size[0]), min(y, resolution[1] - size[1]), *size]
+
+
+def _report_unsupported(name: str, b_camera: Any, context: ExportContext) -> None:
+    if b_camera.type not in ("PERSP", "ORTHO"):
+        kind = b_camera.bl_rna.properties["type"].enum_items[b_camera.type].name
+        context.log.add(name, f"a {kind.lower()} camera is not supported yet; a perspective view is rendered")
+    if b_camera.dof.use_dof:
+        context.log.add(name, "depth of field is not supported yet; everything is sharp")

@@ -1,0 +1,155 @@
+"""Shader nodes as weighted closures: Mix and Add Shader multiplied out, inputs folded to constants."""
+
+from collections.abc import Callable
+from typing import Any
+
+from .arithmetic import BLACK, WHITE, Color, clamp, scale
+from .fold import Folder
+from .nodes import Input, Output, origin
+
+Closure = dict[str, Any]
+WeightedClosure = dict[str, Any]
+
+_NEGLIGIBLE = 1e-6
+# Principled inputs the core has under the same name in snake case: identifier and whether it is a color.
+_PRINCIPLED = (
+    ("Base Color", True),
+    ("Metallic", False),
+    ("Roughness", False),
+    ("IOR", False),
+    ("Alpha", False),
+    ("Specular IOR Level", False),
+    ("Specular Tint", True),
+    ("Transmission Weight", False),
+    ("Coat Weight", False),
+    ("Coat Roughness", False),
+    ("Coat IOR", False),
+    ("Coat Tint", True),
+    ("Emission Color", True),
+    ("Emission Strength", False),
+)
+# Inputs that are left out, and do nothing at 0.
+_LEFT_OUT = (
+    "Subsurface Weight",
+    "Sheen Weight",
+    "Anisotropic",
+    "Anisotropy",
+    "Diffuse Roughness",
+    "Thin Film Thickness",
+    "Thin Wall",
+)
+_NORMALS = ("Normal", "Coat Normal", "Clear Coat Normal")
+
+
+def closures(folder: Folder, entry: Input, weight: float = 1.0) -> list[WeightedClosure]:
+    """The closures a shader input stands for, each with its share; empty for black."""
+    source = origin(entry)
+    if isinstance(source, Input) or source.b_node.mute or weight < _NEGLIGIBLE:
+        return []
+    kind = source.b_node.type
+    if kind == "MIX_SHADER":
+        factor = clamp(folder.value(source.input("Fac")))
+        first = closures(folder, source.input("Shader"), weight * (1.0 - factor))
+        return first + closures(folder, source.input("Shader_001"), weight * factor)
+    if kind == "ADD_SHADER":
+        first = closures(folder, source.input("Shader"), weight)
+        return first + closures(folder, source.input("Shader_001"), weight)
+    _report_left_out(folder, source)
+    record, share = _closure(folder, source)
+    return [{"weight": list(scale(share, weight)), "closure": record}] if record else []
+
+
+def _closure(folder: Folder, source: Output) -> tuple[Closure | None, Color]:
+    """One shader node as a closure, and its tint; no closure for black."""
+    b_node = source.b_node
+    convert = _SHADERS.get(b_node.type)
+    if convert is not None:
+        return convert(folder, source), WHITE
+    if b_node.type == "HOLDOUT":
+        folder.report_node(b_node, "holdouts are not supported yet; black is used instead")
+        return None, BLACK
+    entry = source.find("Color") or source.find("Base Color")
+    if entry is None or source.b_socket.identifier == "Volume":
+        folder.report_node(b_node, "this shader is not supported; black is used instead")
+        return None, BLACK
+    folder.report_node(b_node, "this shader is not supported yet; Diffuse is used instead")
+    return {"kind": "diffuse", "color": list(folder.color(entry))}, WHITE
+
+
+def _report_left_out(folder: Folder, source: Output) -> None:
+    """Inputs that would change the picture but are not rendered yet."""
+    for identifier in _LEFT_OUT:
+        entry = source.find(identifier)
+        if entry is not None and folder.value(entry) != 0.0:
+            folder.report_node(source.b_node, f"{identifier} is not supported yet; left out")
+    for identifier in _NORMALS:
+        entry = source.find(identifier)
+        if entry is not None and isinstance(origin(entry), Output):
+            message = f"{identifier} is not supported yet; the surface's own is used instead"
+            folder.report_node(source.b_node, message)
+
+
+def _diffuse(folder: Folder, source: Output) -> Closure:
+    if folder.value(source.input("Roughness")) > 0.0:
+        folder.report_node(source.b_node, "Roughness is not supported yet; left out")
+    return {"kind": "diffuse", "color": list(folder.color(source.input("Color")))}
+
+
+def _rough(kind: str, *more: str) -> Callable[[Folder, Output], Closure]:
+    """A closure of color, roughness and further numbers."""
+
+    def convert(folder: Folder, source: Output) -> Closure:
+        numbers = {name.lower(): folder.value(source.input(name)) for name in more}
+        roughness = clamp(folder.value(source.input("Roughness")))
+        # Blender 4.1 and before had perfect mirrors as a distribution of their own.
+        if getattr(source.b_node, "distribution", "") == "SHARP":
+            roughness = 0.0
+        color = list(folder.color(source.input("Color")))
+        return {"kind": kind, "color": color, "roughness": roughness, **numbers}
+
+    return convert
+
+
+def _transparent(folder: Folder, source: Output) -> Closure:
+    return {"kind": "transparent", "color": list(folder.color(source.input("Color")))}
+
+
+def _emission(folder: Folder, source: Output) -> Closure:
+    color = folder.color(source.input("Color"))
+    radiance = scale(color, folder.value(source.input("Strength")))
+    return {"kind": "emission", "radiance": list(radiance)}
+
+
+def _principled(folder: Folder, source: Output) -> Closure:
+    record: Closure = {"kind": "principled"}
+    for identifier, is_color in _PRINCIPLED:
+        entry = source.input(identifier)
+        name = identifier.lower().replace(" ", "_")
+        record[name] = list(folder.color(entry)) if is_color else folder.value(entry)
+    return record
+
+
+def _metallic(folder: Folder, source: Output) -> Closure:
+    if source.b_node.fresnel_type != "F82":
+        folder.report_node(source.b_node, "physical conductors are not supported yet; F82 is used")
+    return {
+        "kind": "principled",
+        "metallic": 1.0,
+        "base_color": list(folder.color(source.input("Base Color"))),
+        "specular_tint": list(folder.color(source.input("Edge Tint"))),
+        "roughness": folder.value(source.input("Roughness")),
+    }
+
+
+_SHADERS: dict[str, Callable[[Folder, Output], Closure]] = {
+    "BSDF_DIFFUSE": _diffuse,
+    "BSDF_GLOSSY": _rough("glossy"),
+    "BSDF_GLASS": _rough("glass", "IOR"),
+    "BSDF_REFRACTION": _rough("refraction", "IOR"),
+    "BSDF_TRANSPARENT": _transparent,
+    "EMISSION": _emission,
+    "BACKGROUND": _emission,
+    "BSDF_PRINCIPLED": _principled,
+    "BSDF_METALLIC": _metallic,
+}
+"""How each shader node is rendered, by Blender's `node.type`."""

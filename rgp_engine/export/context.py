@@ -1,0 +1,44 @@
+"""What every part of the export works with."""
+
+import time
+from collections.abc import Hashable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from ..report import ProblemLog
+
+if TYPE_CHECKING:
+    import rgp_core
+
+_TICK_SECONDS = 0.1
+
+
+class Cancelled(Exception):
+    """The user pressed Esc during the export."""
+
+
+@dataclass
+class ExportContext:
+    """The scene being built, what is in it already, and where problems go."""
+
+    engine: Any
+    b_depsgraph: Any
+    builder: "rgp_core.SceneBuilder"
+    log: ProblemLog
+    meshes: dict[Hashable, int | None] = field(default_factory=dict)
+    """Index of each evaluated geometry in the builder; None for those without triangles."""
+    materials: dict[Hashable, int] = field(default_factory=dict)
+    """Index of each evaluated material in the builder."""
+    emits: bool = False
+    """True once anything in the scene can give light."""
+    _next_tick: float = 0.0
+
+    def tick(self, doing: str) -> None:
+        """To be called in every long loop: shows what is exported, raises Cancelled after Esc."""
+        now = time.monotonic()
+        if now < self._next_tick:
+            return
+        self._next_tick = now + _TICK_SECONDS
+        if self.engine.test_break():
+            raise Cancelled
+        self.engine.update_stats("", f"Exporting {doing}")

@@ -1,0 +1,265 @@
+"""Node inputs folded to constants: plain value and color nodes are computed, textures are replaced by their average.
+
+What cannot be computed is reported once per material and node, with the value that is used instead.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from ..report import ProblemLog
+from . import arithmetic
+from .arithmetic import Color, clamp
+from .blackbody import blackbody
+from .nodes import Input, Output, origin
+from .texture import texture_average
+
+Value = float | Color
+
+
+class UnfoldableError(Exception):
+    """A node whose result no constant can stand for."""
+
+
+class Folder:
+    """Folds the inputs of one material's, lamp's or world's nodes."""
+
+    def __init__(self, subject: str, log: ProblemLog) -> None:
+        self._subject = subject
+        self._log = log
+
+    def color(self, entry: Input) -> Color:
+        """Constant an input stands for, as a color or vector."""
+        return as_color(self.fold(entry))
+
+    def value(self, entry: Input) -> float:
+        """Constant an input stands for, as a number."""
+        return as_number(self.fold(entry), entry.b_socket.type)
+
+    def report(self, message: str) -> None:
+        """Adds a problem of the material, lamp or world."""
+        self._log.add(self._subject, message)
+
+    def report_node(self, b_node: Any, message: str) -> None:
+        """Adds a problem that names the node."""
+        self.report(f'node "{_title(b_node)}": {message}')
+
+    def fold(self, entry: Input) -> Value:
+        """Constant an input stands for; its own default where the node before it cannot be computed."""
+        source = origin(entry)
+        if isinstance(source, Input):
+            return _converted(_default(source.b_socket), source.b_socket.type, entry.b_socket.type)
+        try:
+            return _converted(self._node(source), source.b_socket.type, entry.b_socket.type)
+        except UnfoldableError:
+            default = _default(entry.b_socket)
+            used = f"{_text(default)} is used for {entry.b_socket.name} instead"
+            self.report_node(source.b_node, f"not supported yet; {used}")
+            return default
+
+    def _node(self, output: Output) -> Value:
+        b_node = output.b_node
+        if b_node.mute:
+            return _default(output.b_socket)
+        compute = _NODES.get(b_node.type)
+        if compute is not None:
+            return compute(self, output)
+        average = texture_average(b_node, output.b_socket, lambda name: self.fold(output.input(name)))
+        if average is None:
+            raise UnfoldableError
+        value, why = average
+        self.report_node(b_node, f"{why}; {_text(value)} is used instead")
+        return value
+
+
+def as_color(value: Value) -> Color:
+    """A number is gray."""
+    return (value, value, value) if isinstance(value, float) else value
+
+
+def as_number(value: Value, socket_type: str) -> float:
+    """A color counts by its luminance, a vector by its mean, as in Blender."""
+    if isinstance(value, float):
+        return value
+    return sum(value) / 3.0 if socket_type == "VECTOR" else arithmetic.luminance(value)
+
+
+def _converted(value: Value, from_type: str, to_type: str) -> Value:
+    """As Blender converts between sockets of different types."""
+    return as_color(value) if to_type in ("RGBA", "VECTOR") else as_number(value, from_type)
+
+
+def _default(b_socket: Any) -> Value:
+    """An unlinked socket's own value."""
+    value = getattr(b_socket, "default_value", 0.0)
+    if isinstance(value, bool | int | float):
+        return float(value)
+    if isinstance(value, str):
+        return 0.0
+    return (float(value[0]), float(value[1]), float(value[2]))
+
+
+def _title(b_node: Any) -> str:
+    """The node's label, else its name, which is its kind unless the user renamed it."""
+    return b_node.label or b_node.name
+
+
+def _text(value: Value) -> str:
+    if isinstance(value, float):
+        return f"{value:.3g}"
+    return "(" + ", ".join(f"{channel:.3g}" for channel in value) + ")"
+
+
+def _rgb(_folder: Folder, output: Output) -> Value:
+    return _default(output.b_node.outputs[0])
+
+
+def _math(folder: Folder, output: Output) -> Value:
+    a, b, c = (_number(folder, output, name) for name in ("Value", "Value_001", "Value_002"))
+    operation = arithmetic.MATH.get(output.b_node.operation)
+    if operation is None:
+        raise UnfoldableError
+    result = float(operation(a, b, c))
+    return clamp(result) if output.b_node.use_clamp else result
+
+
+def _mix(folder: Folder, output: Output) -> Value:
+    b_node = output.b_node
+    kind = {"FLOAT": "Float", "VECTOR": "Vector", "RGBA": "Color"}.get(b_node.data_type)
+    if kind is None or (kind == "Vector" and b_node.factor_mode == "NON_UNIFORM"):
+        raise UnfoldableError
+    factor = _number(folder, output, "Factor_Float")
+    factor = clamp(factor) if b_node.clamp_factor else factor
+    a, b = folder.fold(output.input(f"A_{kind}")), folder.fold(output.input(f"B_{kind}"))
+    blend_type = b_node.blend_type if kind == "Color" else "MIX"
+    return _blended(b_node, blend_type, a, b, factor, kind == "Color" and b_node.clamp_result)
+
+
+def _mix_rgb(folder: Folder, output: Output) -> Value:
+    b_node = output.b_node
+    factor = clamp(_number(folder, output, "Fac"))
+    a, b = folder.fold(output.input("Color1")), folder.fold(output.input("Color2"))
+    return _blended(b_node, b_node.blend_type, a, b, factor, b_node.use_clamp)
+
+
+def _blended(b_node: Any, kind: str, a: Value, b: Value, factor: float, is_clamped: bool) -> Value:
+    mixed = arithmetic.blend(kind, as_color(a), as_color(b), factor)
+    if mixed is None:
+        raise UnfoldableError
+    if is_clamped:
+        mixed = (clamp(mixed[0]), clamp(mixed[1]), clamp(mixed[2]))
+    return mixed[0] if isinstance(a, float) else mixed
+
+
+def _number(folder: Folder, output: Output, name: str) -> float:
+    return folder.value(output.input(name))
+
+
+def _triple(folder: Folder, output: Output, name: str) -> Color:
+    return folder.color(output.input(name))
+
+
+def _invert(folder: Folder, output: Output) -> Value:
+    color = _triple(folder, output, "Color")
+    inverted = tuple(1.0 - channel for channel in color)
+    return _blended(output.b_node, "MIX", color, inverted, _number(folder, output, "Fac"), False)
+
+
+def _gamma(folder: Folder, output: Output) -> Value:
+    gamma = _number(folder, output, "Gamma")
+    red, green, blue = (c**gamma if c > 0.0 else c for c in _triple(folder, output, "Color"))
+    return red, green, blue
+
+
+def _hue_saturation(folder: Folder, output: Output) -> Value:
+    color = _triple(folder, output, "Color")
+    changes = [_number(folder, output, name) for name in ("Hue", "Saturation", "Value")]
+    changed = arithmetic.hue_saturation(color, *changes)
+    return _blended(output.b_node, "MIX", color, changed, _number(folder, output, "Fac"), False)
+
+
+def _bright_contrast(folder: Folder, output: Output) -> Value:
+    bright, contrast = (_number(folder, output, name) for name in ("Bright", "Contrast"))
+    return arithmetic.bright_contrast(_triple(folder, output, "Color"), bright, contrast)
+
+
+def _clamp(folder: Folder, output: Output) -> Value:
+    value, low, high = (_number(folder, output, name) for name in ("Value", "Min", "Max"))
+    if output.b_node.clamp_type == "RANGE" and low > high:
+        low, high = high, low
+    return clamp(value, low, high)
+
+
+def _map_range(folder: Folder, output: Output) -> Value:
+    b_node = output.b_node
+    if b_node.data_type != "FLOAT" or b_node.interpolation_type != "LINEAR":
+        raise UnfoldableError
+    names = ("Value", "From Min", "From Max", "To Min", "To Max")
+    value, from_min, from_max, to_min, to_max = (_number(folder, output, name) for name in names)
+    if from_min == from_max:
+        return 0.0
+    mapped = arithmetic.lerp(to_min, to_max, (value - from_min) / (from_max - from_min))
+    return clamp(mapped, min(to_min, to_max), max(to_min, to_max)) if b_node.clamp else mapped
+
+
+def _light_falloff(folder: Folder, output: Output) -> Value:
+    if output.b_socket.identifier != "Quadratic":
+        raise UnfoldableError
+    return _number(folder, output, "Strength")
+
+
+def _combine(names: tuple[str, str, str]) -> Callable[[Folder, Output], Value]:
+    def compute(folder: Folder, output: Output) -> Value:
+        if getattr(output.b_node, "mode", "RGB") != "RGB":
+            raise UnfoldableError
+        x, y, z = (_number(folder, output, name) for name in names)
+        return x, y, z
+
+    return compute
+
+
+def _separate(source: str, names: tuple[str, str, str]) -> Callable[[Folder, Output], Value]:
+    def compute(folder: Folder, output: Output) -> Value:
+        if getattr(output.b_node, "mode", "RGB") != "RGB":
+            raise UnfoldableError
+        return _triple(folder, output, source)[names.index(output.b_socket.identifier)]
+
+    return compute
+
+
+def _color_ramp(folder: Folder, output: Output) -> Value:
+    color = output.b_node.color_ramp.evaluate(_number(folder, output, "Fac"))
+    return color[3] if output.b_socket.identifier == "Alpha" else (color[0], color[1], color[2])
+
+
+def _rgb_curves(folder: Folder, output: Output) -> Value:
+    color = _triple(folder, output, "Color")
+    b_mapping = output.b_node.mapping
+    b_mapping.initialize()
+    combined = [b_mapping.evaluate(b_mapping.curves[3], channel) for channel in color]
+    changed = tuple(b_mapping.evaluate(b_mapping.curves[i], combined[i]) for i in range(3))
+    return _blended(output.b_node, "MIX", color, changed, _number(folder, output, "Fac"), False)
+
+
+_NODES: dict[str, Callable[[Folder, Output], Value]] = {
+    "RGB": _rgb,
+    "VALUE": _rgb,
+    "MATH": _math,
+    "MIX": _mix,
+    "MIX_RGB": _mix_rgb,
+    "INVERT": _invert,
+    "GAMMA": _gamma,
+    "HUE_SAT": _hue_saturation,
+    "BRIGHTCONTRAST": _bright_contrast,
+    "CLAMP": _clamp,
+    "MAP_RANGE": _map_range,
+    "COMBINE_COLOR": _combine(("Red", "Green", "Blue")),
+    "COMBXYZ": _combine(("X", "Y", "Z")),
+    "SEPARATE_COLOR": _separate("Color", ("Red", "Green", "Blue")),
+    "SEPXYZ": _separate("Vector", ("X", "Y", "Z")),
+    "RGBTOBW": lambda folder, output: arithmetic.luminance(_triple(folder, output, "Color")),
+    "VALTORGB": _color_ramp,
+    "CURVE_RGB": _rgb_curves,
+    "LIGHT_FALLOFF": _light_falloff,
+    "BLACKBODY": lambda folder, output: blackbody(_number(folder, output, "Temperature")),
+}
+"""What each kind of node computes, by Blender's `node.type`."""

@@ -1,0 +1,38 @@
+"""Images, for as long as textures are not rendered: their average."""
+
+from typing import Any
+
+import numpy as np
+
+from .arithmetic import Color
+
+# Larger images are not worth reading for one color; 8192 x 8192.
+_MAX_PIXELS = 1 << 26
+_ENCODED = ("sRGB", "Filmic sRGB")
+
+
+def average(b_image: Any, is_sphere: bool = False) -> tuple[Color, float] | None:
+    """Mean color (linear) and alpha of an image; None when its file is missing or it is very large.
+
+    With `is_sphere` rows count by the solid angle they cover in an equirectangular panorama.
+    """
+    width, height = b_image.size
+    channels = b_image.channels
+    if not (width and height and channels) or width * height > _MAX_PIXELS:
+        return None
+    pixels = np.empty(width * height * channels, np.float32)
+    b_image.pixels.foreach_get(pixels)
+    rows = pixels.reshape(height, width, channels)
+    if not b_image.is_float and b_image.colorspace_settings.name in _ENCODED:
+        rows[..., :3] = _linear(rows[..., :3])
+    weights = np.sin((np.arange(height) + 0.5) * (np.pi / height)) if is_sphere else None
+    mean = np.average(rows.mean(axis=1, dtype=np.float64), axis=0, weights=weights)
+    if channels < 3:
+        mean = np.repeat(mean[:1], 3)
+    alpha = float(mean[3]) if channels > 3 else 1.0
+    return (float(mean[0]), float(mean[1]), float(mean[2])), alpha
+
+
+def _linear(encoded: "np.ndarray[Any, np.dtype[np.float32]]") -> Any:
+    """sRGB transfer function undone (IEC 61966-2-1)."""
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)

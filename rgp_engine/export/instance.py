@@ -1,0 +1,112 @@
+"""Objects and instances: what is where, made of which materials, seen by which rays."""
+
+from collections.abc import Hashable
+from typing import Any
+
+import numpy as np
+
+from .context import ExportContext
+from .light import export_light
+from .material import material_index
+from .mesh import mesh_arrays
+from .visibility import instance_bits, owner
+
+_CONVERTED = ("CURVE", "SURFACE", "FONT", "META")
+_LIGHTLESS = ("EMPTY", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE")
+
+
+def export_instances(context: ExportContext) -> None:
+    """Everything the depsgraph shows: objects, and instances of collections, faces, particles and geometry nodes."""
+    for b_instance in context.b_depsgraph.object_instances:
+        b_object = b_instance.object
+        context.tick(b_object.name)
+        if not b_instance.show_self:
+            continue
+        kind = b_object.type
+        if kind == "LIGHT":
+            export_light(context, b_instance)
+        elif kind == "MESH" or kind in _CONVERTED:
+            _export_geometry(context, b_instance)
+        elif kind not in _LIGHTLESS:
+            name = b_object.bl_rna.properties["type"].enum_items[kind].name
+            context.log.add(b_object.name, f"objects of type {name} are not supported yet; left out")
+
+
+def _export_geometry(context: ExportContext, b_instance: Any) -> None:
+    """One object made of triangles."""
+    visibility = instance_bits(context, b_instance)
+    if visibility == 0:
+        return
+    b_object = b_instance.object
+    key = _geometry_key(b_object)
+    if key not in context.meshes:
+        context.meshes[key] = _add_mesh(context, b_object)
+    _report_unsupported(context, b_instance)
+    mesh = context.meshes[key]
+    if mesh is None:
+        return
+    context.builder.add_object(
+        b_object.name,
+        mesh,
+        np.array(b_instance.matrix_world, np.float64),
+        _materials(context, b_object),
+        visibility,
+    )
+
+
+def _geometry_key(b_object: Any) -> Hashable:
+    """Same key, same triangles. Never a name: instances of geometry nodes all bear their object's.
+
+    Objects that share a curve or text may differ in their modifiers, so theirs is the object.
+    """
+    if b_object.type == "MESH":
+        return b_object.data.as_pointer()
+    return ("object", b_object.original.session_uid)
+
+
+def _add_mesh(context: ExportContext, b_object: Any) -> int | None:
+    """Hands an object's triangles to the core; None when it has none."""
+    if b_object.type == "MESH":
+        arrays = mesh_arrays(b_object.data)
+    else:
+        try:
+            b_mesh = b_object.to_mesh()
+        except RuntimeError as error:
+            context.log.add(b_object.name, f"cannot be turned into a mesh; left out ({error})")
+            return None
+        arrays = mesh_arrays(b_mesh) if b_mesh else None
+        b_object.to_mesh_clear()
+    if arrays is None:
+        return None
+    return context.builder.add_mesh(
+        b_object.data.name,
+        arrays.positions,
+        arrays.triangles,
+        arrays.corner_normals,
+        arrays.corner_uvs,
+        arrays.slots,
+    )
+
+
+def _materials(context: ExportContext, b_object: Any) -> list[int]:
+    """Index of the material in each slot; the view layer's override replaces all."""
+    b_override = context.b_depsgraph.view_layer_eval.material_override
+    if b_override is not None:
+        return [material_index(context, b_override)]
+    b_slots = [b_slot.material for b_slot in b_object.material_slots]
+    return [material_index(context, b_material) for b_material in b_slots or [None]]
+
+
+def _report_unsupported(context: ExportContext, b_instance: Any) -> None:
+    """What the object asks for beyond its triangles."""
+    b_object, b_owner = b_instance.object, owner(b_instance)
+    b_view_layer = context.b_depsgraph.view_layer_eval
+    log = context.log
+    if b_object.is_holdout or b_owner.holdout_get(view_layer=b_view_layer):
+        log.add(b_owner.name, "holdouts are not supported yet; rendered as it is")
+    if b_object.is_shadow_catcher:
+        log.add(b_owner.name, "shadow catchers are not supported yet; rendered as it is")
+    for b_system in () if b_instance.is_instance else b_object.particle_systems:
+        b_settings = b_system.settings
+        if b_settings.type == "HAIR" and b_settings.render_type == "PATH":
+            log.add(b_object.name, f'hair "{b_system.name}" is not supported yet; left out')

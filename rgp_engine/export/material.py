@@ -1,0 +1,50 @@
+"""Blender's materials as the core's MaterialRecord."""
+
+from typing import Any
+
+from .closures import WeightedClosure, closures
+from .context import ExportContext
+from .fold import Folder
+from .nodes import Input, Output, node_tree, origin, output_node
+
+_DEFAULT = {"weight": [1.0] * 3, "closure": {"kind": "diffuse", "color": [0.8] * 3}}
+
+
+def material_index(context: ExportContext, b_material: Any | None) -> int:
+    """Index of an evaluated material in the builder, added when it is met first; None is Blender's default grey."""
+    key = None if b_material is None else b_material.as_pointer()
+    if key not in context.materials:
+        record = _default_record() if b_material is None else material_record(context, b_material)
+        context.emits |= any(map(_emits, record["closures"]))
+        context.materials[key] = context.builder.add_material(record)
+    return context.materials[key]
+
+
+def material_record(context: ExportContext, b_material: Any) -> dict[str, Any]:
+    """The surface of a material; displacement and volume are reported."""
+    name = b_material.name
+    b_tree = node_tree(b_material)
+    if b_tree is None:
+        color = list(b_material.diffuse_color[:3])
+        closure = {"kind": "diffuse", "color": color}
+        return {"name": name, "closures": [{"weight": [1.0] * 3, "closure": closure}]}
+    b_output = output_node(b_tree)
+    if b_output is None:
+        context.log.add(name, "it has no Material Output node; black is used")
+        return {"name": name, "closures": []}
+    for socket in ("Volume", "Displacement"):
+        if isinstance(origin(Input(b_output.inputs[socket], ())), Output):
+            context.log.add(name, f"{socket} is not supported yet; left out")
+    folder = Folder(name, context.log)
+    return {"name": name, "closures": closures(folder, Input(b_output.inputs["Surface"], ()))}
+
+
+def _default_record() -> dict[str, Any]:
+    return {"name": "(no material)", "closures": [_DEFAULT]}
+
+
+def _emits(weighted: WeightedClosure) -> bool:
+    closure = weighted["closure"]
+    if closure["kind"] == "principled":
+        return any(closure.get("emission_color", ())) and closure.get("emission_strength", 0) > 0
+    return closure["kind"] == "emission" and any(closure["radiance"])

@@ -1,0 +1,33 @@
+"""Settings of the film."""
+
+import bpy
+
+
+class RGPFilmSettings(bpy.types.PropertyGroup):
+    """How samples become pixels."""
+
+    filter: bpy.props.EnumProperty(
+        name="Pixel Filter",
+        description="Pixel filter",
+        items=(
+            ("blackman_harris", "Blackman-Harris", "Smooth, as Cycles uses by default", 0),
+            ("box", "Box", "All the same, one pixel wide", 1),
+        ),
+        default="blackman_harris",
+    )
+    filter_width: bpy.props.FloatProperty(
+        name="Filter Width",
+        description="Full width of the pixel filter",
+        default=1.5,
+        min=0.1,
+        max=10.0,
+        subtype="PIXEL",
+    )
+    tile_size: bpy.props.IntProperty(
+        name="Tile Size",
+        description="Edge of the tiles the picture is cut into; changes nothing in the picture",
+        default=64,
+        min=4,
+        max=4096,
+        subtype="PIXEL",
+    )

@@ -1,0 +1,24 @@
+"""Settings of the photon pass."""
+
+import bpy
+
+
+class RGPPhotonPassSettings(bpy.types.PropertyGroup):
+    """How many photons carry the light into the scene."""
+
+    photon_count: bpy.props.IntProperty(
+        name="Photons",
+        description="Photons emitted by all lights together; more make smoother indirect light",
+        default=1_000_000,
+        min=0,
+        max=1_000_000_000,
+        soft_min=10_000,
+        soft_max=100_000_000,
+    )
+    max_depth: bpy.props.IntProperty(
+        name="Max Depth",
+        description="Surfaces a photon may visit before it is dropped; low values darken the picture",
+        default=64,
+        min=1,
+        max=1000,
+    )

@@ -1,0 +1,22 @@
+"""Settings of the render as a whole."""
+
+import bpy
+
+
+class RGPRenderSettings(bpy.types.PropertyGroup):
+    """Threads and randomness."""
+
+    threads: bpy.props.IntProperty(
+        name="Threads",
+        description="Threads to use; 0 takes all; changes nothing in the picture",
+        default=0,
+        min=0,
+        max=1024,
+    )
+    seed: bpy.props.IntProperty(
+        name="Seed",
+        description="Another seed gives other noise",
+        default=0,
+        min=0,
+        max=2_147_483_647,
+    )

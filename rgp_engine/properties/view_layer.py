@@ -1,0 +1,21 @@
+"""Settings of a view layer."""
+
+from typing import Any
+
+import bpy
+
+
+def _update_passes(group: Any, _context: Any) -> None:
+    for b_view_layer in group.id_data.view_layers:
+        b_view_layer.update_render_passes()
+
+
+class RGPViewLayerSettings(bpy.types.PropertyGroup):
+    """Passes of RGP Engine."""
+
+    use_pass_indirect: bpy.props.BoolProperty(
+        name="Indirect",
+        description="Deliver the indirect light alone as a pass of its own",
+        default=False,
+        update=_update_passes,
+    )

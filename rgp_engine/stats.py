@@ -1,0 +1,67 @@
+"""The stats file: what the core measured, completed with what only the host knows, and its table."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from .report import Problem
+
+
+def complete(
+    core_stats: Mapping[str, Any],
+    export_seconds: float,
+    versions: Mapping[str, str],
+    settings: Mapping[str, Mapping[str, Any]],
+    problems: Sequence[Problem],
+) -> dict[str, Any]:
+    """The stats file's content: the core's, with export time, versions, settings and problems."""
+    seconds = {"export": export_seconds, **core_stats["seconds"]}
+    seconds["total"] += export_seconds
+    return {
+        **core_stats,
+        "seconds": seconds,
+        "versions": {**core_stats.get("versions", {}), **versions},
+        "settings": settings,
+        "problems": [asdict(problem) for problem in problems],
+    }
+
+
+def rows(stats: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """The figures of a stats file as labelled lines of text."""
+    lines = [(f"{_title(name)} time", f"{value:.2f} s") for name, value in stats["seconds"].items()]
+    lines += [(f"{_title(name)} rays", f"{value:,}") for name, value in stats["rays"].items()]
+    lines += [(f"Photons {name}", f"{value:,}") for name, value in stats["photons"].items()]
+    pyramid = dict(stats["pyramid"])
+    size = pyramid.pop("bytes")
+    lines += [(f"Pyramid {name}", _number(value)) for name, value in pyramid.items()]
+    lines += [("Pyramid memory", _mebibytes(size))]
+    lines += [("Peak memory", _mebibytes(stats["memory_peak_bytes"]))]
+    return lines
+
+
+def effect_rows(stats: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """The effects plan of a stats file as labelled lines of text."""
+    lines = []
+    for effect in stats["effects"]:
+        cost = f"{effect['seconds']:.2f} s" if effect["called_for"] else "not called for"
+        lines.append((_title(effect["name"]), f"{cost}: {effect['because']}"))
+    return lines
+
+
+def clock(seconds: float) -> str:
+    """Such as "01:05" or "2:00:03"."""
+    minutes, seconds_left = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{seconds_left:02}" if hours else f"{minutes:02}:{seconds_left:02}"
+
+
+def _title(name: str) -> str:
+    return name.replace("_", " ").capitalize()
+
+
+def _number(value: Any) -> str:
+    return f"{value:,}" if isinstance(value, int) else str(value)
+
+
+def _mebibytes(count: int) -> str:
+    return f"{count / 2**20:.1f} MiB"

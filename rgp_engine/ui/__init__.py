@@ -1,0 +1,27 @@
+"""Panels of the Properties editor."""
+
+import bpy
+
+from . import blender_panels, light, material, problems, render, scene_parts
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (
+        *render.CLASSES,
+        *problems.CLASSES,
+        *light.CLASSES,
+        *material.CLASSES,
+        *scene_parts.CLASSES,
+    )
+)
+
+
+def register() -> None:
+    """Adds the engine's panels and shows Blender's own that make sense for it."""
+    _register_classes()
+    blender_panels.show()
+
+
+def unregister() -> None:
+    """Removes them again."""
+    blender_panels.hide()
+    _unregister_classes()

@@ -1,0 +1,81 @@
+"""Render properties: one panel for each group of settings."""
+
+from typing import Any
+
+from bpy.types import Panel
+
+from .base import EnginePanel, draw_settings
+
+
+class RGP_PT_photons(EnginePanel, Panel):
+    """Photon pass."""
+
+    bl_label = "Photons"
+    bl_context = "render"
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        draw_settings(self.layout, context.scene.rgp.photon_pass, "photon_count", "max_depth")
+
+
+class RGP_PT_pyramid(EnginePanel, Panel):
+    """Radiance Grid Pyramid."""
+
+    bl_label = "Pyramid"
+    bl_context = "render"
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        b_pyramid = context.scene.rgp.pyramid
+        names = ("finest_resolution", "photons_per_cell", "normal_classes")
+        draw_settings(self.layout, b_pyramid, *names)
+        column = self.layout.column(align=True)
+        column.prop(b_pyramid, "bins", index=0, text="Bins Elevation")
+        column.prop(b_pyramid, "bins", index=1, text="Azimuth")
+
+
+class RGP_PT_gather(EnginePanel, Panel):
+    """Final gather."""
+
+    bl_label = "Gather"
+    bl_context = "render"
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        names = ("rays", "camera_samples", "light_samples", "sampling", "retrace_distance", "max_depth")
+        draw_settings(self.layout, context.scene.rgp.gather, *names)
+
+
+class RGP_PT_film(EnginePanel, Panel):
+    """Film."""
+
+    bl_label = "Film"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        draw_settings(self.layout, context.scene.rgp.film, "filter", "filter_width")
+        self.layout.prop(context.scene.render, "film_transparent", text="Transparent")
+
+
+class RGP_PT_performance(EnginePanel, Panel):
+    """Performance."""
+
+    bl_label = "Performance"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        draw_settings(self.layout, context.scene.rgp.render, "threads", "seed")
+        draw_settings(self.layout, context.scene.rgp.film, "tile_size")
+
+
+CLASSES = (
+    RGP_PT_photons,
+    RGP_PT_pyramid,
+    RGP_PT_gather,
+    RGP_PT_film,
+    RGP_PT_performance,
+)
