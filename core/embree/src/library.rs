@@ -18,8 +18,10 @@ pub struct Library {
 }
 
 impl Library {
-    /// Opens the Embree shared library at `path` (`.so`, `.dylib` or `.dll`); its TBB is looked for beside
-    /// it.
+    /// Opens the Embree shared library at `path` (`.so`, `.dylib` or `.dll`); its TBB is looked for beside it.
+    ///
+    /// Opening a library runs its code, so `path` must be one the user trusts, and it must have been built for
+    /// one level of instances, which is Embree's default: a hit has no room for more.
     ///
     /// # Errors
     /// [`EmbreeError::Missing`] if the system cannot open the file, [`EmbreeError::NotEmbree`] if it is

@@ -80,31 +80,30 @@ fn a_mesh_is_seen_by_rays_that_share_a_mask_bit() {
 }
 
 #[test]
-fn no_ray_slips_through_the_seams_of_a_closed_mesh() {
-    let corners = [
-        [1.0, 0.0, 0.0],
-        [-1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [0.0, -1.0, 0.0],
-        [0.0, 0.0, 1.0],
-        [0.0, 0.0, -1.0],
-    ];
-    let mut faces = Vec::new();
-    for x in [0, 1] {
-        for y in [2, 3] {
-            faces.extend([[x, y, 4], [x, y, 5]]);
+fn no_ray_slips_through_the_seams_of_a_mesh() {
+    const SIDE: u32 = 65;
+    let mut random = Random(5);
+    let mut positions = Vec::new();
+    let mut triangles = Vec::new();
+    for index in 0..SIDE * SIDE {
+        let (column, row) = (index % SIDE, index / SIDE);
+        positions.push([column as f32, row as f32, random.signed()]);
+        if column + 1 < SIDE && row + 1 < SIDE {
+            triangles.extend([[index, index + 1, index + SIDE + 1], [index, index + SIDE + 1, index + SIDE]]);
         }
     }
-    let scene = mesh_scene(&device(), 0, &corners, &faces);
-    let mut random = Random(5);
-    for _ in 0..10_000 {
-        // Aimed at a point of an edge, from inside.
-        let [s, _, _] = random.vector();
-        let target = [s.abs(), 1.0 - s.abs(), 0.0];
-        let origin = random.vector().map(|value| 0.1 * value);
-        let direction = [0, 1, 2].map(|axis| target[axis] - origin[axis]);
-        let hit = scene.intersect(&ray(origin, direction)).expect("a closed mesh hides everything outside");
-        assert!((hit.t - 1.0).abs() < 1e-5, "{}", hit.t);
+    let scene = mesh_scene(&device(), 0, &positions, &triangles);
+    for _ in 0..200_000 {
+        // Down from far above, to a point of an edge inside the mesh.
+        let cell = |value: f32| 1 + (value.abs() * (SIDE - 2) as f32) as u32;
+        let from = cell(random.signed()) + SIDE * cell(random.signed());
+        let [start, end] = [positions[from as usize], positions[(from - 1) as usize]];
+        let along = random.signed().abs();
+        let target = [0, 1, 2].map(|axis| start[axis] + along * (end[axis] - start[axis]));
+        let [x, y, _] = random.vector();
+        let origin = [target[0] + 100.0 * x, target[1] + 100.0 * y, 1000.0];
+        let query = ray(origin, [0, 1, 2].map(|axis| target[axis] - origin[axis]));
+        assert!(scene.intersect(&query).is_some() && scene.occluded(&query), "{query:?}");
     }
 }
 

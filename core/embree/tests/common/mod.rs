@@ -13,7 +13,7 @@ pub(crate) fn library_path() -> PathBuf {
         return path.into();
     }
     let script = "import glob, os, embreex; d = os.path.dirname(embreex.__file__); \
-                  print((glob.glob(d + '.libs/*embree4*') + glob.glob(d + '/.dylibs/*embree4*') + ['']) [0])";
+                  print((glob.glob(d + '.libs/*embree4*') + glob.glob(d + '/.dylibs/*embree4*') + [''])[0])";
     let output = Command::new("python3").args(["-c", script]).output();
     let found =
         output.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()).unwrap_or_default();
