@@ -42,7 +42,7 @@ class RenderSession:
             self._exported = export_scene(self._engine, self._b_depsgraph, self._log)
         except Cancelled:
             self._cancelled = True
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001 (one readable message, whatever it is)
             self._fail(error)
 
     def render(self) -> None:
@@ -59,7 +59,7 @@ class RenderSession:
             )
             if self._exported is not None:
                 self._render(self._exported, b_result)
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001 (one readable message, whatever it is)
             self._fail(error)
         finally:
             self._exported = None

@@ -8,7 +8,7 @@ _BLENDERS_OWN = ("rna_type", "name")
 
 def setting_names(b_group: Any) -> list[str]:
     """Names of a property group's settings, or of the groups in it."""
-    return [name for name in b_group.bl_rna.properties.keys() if name not in _BLENDERS_OWN]
+    return [name for name in b_group.bl_rna.properties.keys() if name not in _BLENDERS_OWN]  # noqa: SIM118 (no dict)
 
 
 def core_settings(b_scene: Any) -> dict[str, dict[str, Any]]:

@@ -27,22 +27,23 @@ def complete(
 
 
 def rows(stats: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """The figures of a stats file as labelled lines of text."""
+    """The figures of a stats file as labelled lines of text; those that are not there are left out."""
     lines = [(f"{_title(name)} time", f"{value:.2f} s") for name, value in stats["seconds"].items()]
-    lines += [(f"{_title(name)} rays", f"{value:,}") for name, value in stats["rays"].items()]
-    lines += [(f"Photons {name}", f"{value:,}") for name, value in stats["photons"].items()]
-    pyramid = dict(stats["pyramid"])
-    size = pyramid.pop("bytes")
-    lines += [(f"Pyramid {name}", _number(value)) for name, value in pyramid.items()]
-    lines += [("Pyramid memory", _mebibytes(size))]
-    lines += [("Peak memory", _mebibytes(stats["memory_peak_bytes"]))]
+    lines += [(f"{_title(name)} rays", f"{value:,}") for name, value in stats.get("rays", {}).items()]
+    lines += [(f"Photons {name}", f"{value:,}") for name, value in stats.get("photons", {}).items()]
+    for name, value in stats.get("pyramid", {}).items():
+        lines.append(
+            (f"Pyramid {_words(name)}", _mebibytes(value) if name.endswith("bytes") else _number(value))
+        )
+    if "memory_peak_bytes" in stats:
+        lines.append(("Peak memory", _mebibytes(stats["memory_peak_bytes"])))
     return lines
 
 
 def effect_rows(stats: Mapping[str, Any]) -> list[tuple[str, str]]:
     """The effects plan of a stats file as labelled lines of text."""
     lines = []
-    for effect in stats["effects"]:
+    for effect in stats.get("effects", ()):
         cost = f"{effect['seconds']:.2f} s" if effect["called_for"] else "not called for"
         lines.append((_title(effect["name"]), f"{cost}: {effect['because']}"))
     return lines
@@ -55,12 +56,16 @@ def clock(seconds: float) -> str:
     return f"{hours}:{minutes:02}:{seconds_left:02}" if hours else f"{minutes:02}:{seconds_left:02}"
 
 
+def _words(name: str) -> str:
+    return name.replace("_", " ").replace("bytes", "memory")
+
+
 def _title(name: str) -> str:
-    return name.replace("_", " ").capitalize()
+    return _words(name).capitalize()
 
 
-def _number(value: Any) -> str:
-    return f"{value:,}" if isinstance(value, int) else str(value)
+def _number(value: float) -> str:
+    return f"{value:,}" if isinstance(value, int) else f"{value:.4g}"
 
 
 def _mebibytes(count: int) -> str:

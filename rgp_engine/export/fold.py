@@ -131,17 +131,17 @@ def _mix(folder: Folder, output: Output) -> Value:
     factor = clamp(factor) if b_node.clamp_factor else factor
     a, b = folder.fold(output.input(f"A_{kind}")), folder.fold(output.input(f"B_{kind}"))
     blend_type = b_node.blend_type if kind == "Color" else "MIX"
-    return _blended(b_node, blend_type, a, b, factor, kind == "Color" and b_node.clamp_result)
+    return _blended(blend_type, a, b, factor, is_clamped=kind == "Color" and b_node.clamp_result)
 
 
 def _mix_rgb(folder: Folder, output: Output) -> Value:
     b_node = output.b_node
     factor = clamp(_number(folder, output, "Fac"))
     a, b = folder.fold(output.input("Color1")), folder.fold(output.input("Color2"))
-    return _blended(b_node, b_node.blend_type, a, b, factor, b_node.use_clamp)
+    return _blended(b_node.blend_type, a, b, factor, is_clamped=b_node.use_clamp)
 
 
-def _blended(b_node: Any, kind: str, a: Value, b: Value, factor: float, is_clamped: bool) -> Value:
+def _blended(kind: str, a: Value, b: Value, factor: float, *, is_clamped: bool = False) -> Value:
     mixed = arithmetic.blend(kind, as_color(a), as_color(b), factor)
     if mixed is None:
         raise UnfoldableError
@@ -161,7 +161,7 @@ def _triple(folder: Folder, output: Output, name: str) -> Color:
 def _invert(folder: Folder, output: Output) -> Value:
     color = _triple(folder, output, "Color")
     inverted = tuple(1.0 - channel for channel in color)
-    return _blended(output.b_node, "MIX", color, inverted, _number(folder, output, "Fac"), False)
+    return _blended("MIX", color, inverted, _number(folder, output, "Fac"))
 
 
 def _gamma(folder: Folder, output: Output) -> Value:
@@ -174,7 +174,7 @@ def _hue_saturation(folder: Folder, output: Output) -> Value:
     color = _triple(folder, output, "Color")
     changes = [_number(folder, output, name) for name in ("Hue", "Saturation", "Value")]
     changed = arithmetic.hue_saturation(color, *changes)
-    return _blended(output.b_node, "MIX", color, changed, _number(folder, output, "Fac"), False)
+    return _blended("MIX", color, changed, _number(folder, output, "Fac"))
 
 
 def _bright_contrast(folder: Folder, output: Output) -> Value:
@@ -237,7 +237,7 @@ def _rgb_curves(folder: Folder, output: Output) -> Value:
     b_mapping.initialize()
     combined = [b_mapping.evaluate(b_mapping.curves[3], channel) for channel in color]
     changed = tuple(b_mapping.evaluate(b_mapping.curves[i], combined[i]) for i in range(3))
-    return _blended(output.b_node, "MIX", color, changed, _number(folder, output, "Fac"), False)
+    return _blended("MIX", color, changed, _number(folder, output, "Fac"))
 
 
 _NODES: dict[str, Callable[[Folder, Output], Value]] = {

@@ -32,7 +32,8 @@ class RGPGatherSettings(bpy.types.PropertyGroup):
     )
     sampling: bpy.props.EnumProperty(
         name="Sampling",
-        description="Gather rays follow the surface's reflection (cosine), or are uniform over the hemisphere as in the paper",
+        description="Gather rays follow the surface's reflection (cosine), or are uniform over the hemisphere "
+        "as in the paper",
         items=(
             ("cosine", "Importance", "More rays where the surface reflects more light", 0),
             ("uniform", "Uniform", "The same number of rays in every direction", 1),
@@ -41,7 +42,8 @@ class RGPGatherSettings(bpy.types.PropertyGroup):
     )
     retrace_distance: bpy.props.FloatProperty(
         name="Retrace Distance",
-        description="Gather rays shorter than this many cells are continued one bounce, which keeps corners right; 0 never",
+        description="Gather rays shorter than this many cells are continued one bounce, "
+        "which keeps corners right; 0 never",
         default=1.7320508,
         min=0.0,
         max=8.0,

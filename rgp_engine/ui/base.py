@@ -1,6 +1,6 @@
 """What all panels of the engine share."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 from bpy_extras.node_utils import find_node_input
 
@@ -18,6 +18,12 @@ class EnginePanel:
     def poll(cls, context: Any) -> bool:
         """True when the scene is rendered by this engine."""
         return bool(context.engine in cls.COMPAT_ENGINES)
+
+
+class ClosedEnginePanel(EnginePanel):
+    """One that is closed until the user opens it."""
+
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
 
 
 def draw_settings(layout: Any, b_group: Any, *names: str) -> None:

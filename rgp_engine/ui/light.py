@@ -4,7 +4,7 @@ from typing import Any
 
 from bpy.types import Panel
 
-from .base import EnginePanel, draw_node_input, draw_settings, draw_use_nodes
+from .base import ClosedEnginePanel, EnginePanel, draw_node_input, draw_settings, draw_use_nodes
 
 
 class _LightPanel(EnginePanel):
@@ -57,12 +57,11 @@ class RGP_PT_light_beam(_LightPanel, Panel):
         draw_settings(self.layout, context.light, *names)
 
 
-class RGP_PT_light_nodes(_LightPanel, Panel):
+class RGP_PT_light_nodes(_LightPanel, ClosedEnginePanel, Panel):
     """Nodes."""
 
     bl_label = "Nodes"
     bl_parent_id = "RGP_PT_light"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""

@@ -1,6 +1,6 @@
 """Material properties: slots and surface."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 from bpy.types import Panel
 
@@ -12,7 +12,7 @@ class RGP_PT_context_material(EnginePanel, Panel):
 
     bl_label = ""
     bl_context = "material"
-    bl_options = {"HIDE_HEADER"}
+    bl_options: ClassVar = {"HIDE_HEADER"}
 
     @classmethod
     def poll(cls, context: Any) -> bool:

@@ -6,7 +6,7 @@ from bpy.types import Panel
 
 from ..report import last_outcome
 from ..stats import effect_rows, rows
-from .base import EnginePanel
+from .base import ClosedEnginePanel, EnginePanel
 
 _MAX_PROBLEMS = 50
 
@@ -41,12 +41,11 @@ class RGP_PT_problems(EnginePanel, Panel):
             column.label(text="None in the last render")
 
 
-class RGP_PT_statistics(EnginePanel, Panel):
+class RGP_PT_statistics(ClosedEnginePanel, Panel):
     """Figures of the last render."""
 
     bl_label = "Last Render"
     bl_context = "render"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, _context: Any) -> None:
         """Draws the panel."""

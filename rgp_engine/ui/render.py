@@ -4,7 +4,7 @@ from typing import Any
 
 from bpy.types import Panel
 
-from .base import EnginePanel, draw_settings
+from .base import ClosedEnginePanel, EnginePanel, draw_settings
 
 
 class RGP_PT_photons(EnginePanel, Panel):
@@ -46,12 +46,11 @@ class RGP_PT_gather(EnginePanel, Panel):
         draw_settings(self.layout, context.scene.rgp.gather, *names)
 
 
-class RGP_PT_film(EnginePanel, Panel):
+class RGP_PT_film(ClosedEnginePanel, Panel):
     """Film."""
 
     bl_label = "Film"
     bl_context = "render"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
@@ -59,12 +58,11 @@ class RGP_PT_film(EnginePanel, Panel):
         self.layout.prop(context.scene.render, "film_transparent", text="Transparent")
 
 
-class RGP_PT_performance(EnginePanel, Panel):
+class RGP_PT_performance(ClosedEnginePanel, Panel):
     """Performance."""
 
     bl_label = "Performance"
     bl_context = "render"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""

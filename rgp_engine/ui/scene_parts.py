@@ -4,7 +4,7 @@ from typing import Any
 
 from bpy.types import Panel
 
-from .base import EnginePanel, draw_node_input, draw_settings, draw_use_nodes
+from .base import ClosedEnginePanel, EnginePanel, draw_node_input, draw_settings, draw_use_nodes
 
 
 class RGP_PT_world_surface(EnginePanel, Panel):
@@ -26,12 +26,11 @@ class RGP_PT_world_surface(EnginePanel, Panel):
             self.layout.prop(context.world, "color")
 
 
-class RGP_PT_object_visibility(EnginePanel, Panel):
+class RGP_PT_object_visibility(ClosedEnginePanel, Panel):
     """What sees the object."""
 
     bl_label = "Visibility"
     bl_context = "object"
-    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context: Any) -> bool:
@@ -63,12 +62,11 @@ class RGP_PT_view_layer_passes(EnginePanel, Panel):
         draw_settings(self.layout, context.view_layer.rgp, "use_pass_indirect")
 
 
-class RGP_PT_view_layer_override(EnginePanel, Panel):
+class RGP_PT_view_layer_override(ClosedEnginePanel, Panel):
     """Override."""
 
     bl_label = "Override"
     bl_context = "view_layer"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""

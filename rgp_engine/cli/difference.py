@@ -1,0 +1,134 @@
+"""Draws two pictures and their difference side by side."""
+
+import struct
+import zlib
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from . import CommandError
+from .exr import Picture
+
+Pixels = npt.NDArray[np.uint8]
+
+_GAP = 8
+_BAR_HEIGHT = 12
+_TEXT_SCALE = 2
+_BACKGROUND = 32
+
+# Difference / scale -1 .. 1 and its color: A darker than B is blue, A brighter is red.
+_STOPS = (-1.0, -0.5, 0.0, 0.5, 1.0)
+_COLORS = ((0.6, 0.9, 1.0), (0.1, 0.35, 0.9), (0.0, 0.0, 0.0), (0.85, 0.15, 0.1), (1.0, 0.9, 0.5))
+
+# Letters of 3 x 5 dots, each row three bits.
+_GLYPHS = {
+    "0": "75557",
+    "1": "26227",
+    "2": "71747",
+    "3": "71717",
+    "4": "55711",
+    "5": "74717",
+    "6": "74757",
+    "7": "71111",
+    "8": "75757",
+    "9": "75717",
+    ".": "00002",
+    "-": "00700",
+    "+": "02720",
+    "%": "51245",
+    "A": "25755",
+    "B": "65656",
+    " ": "00000",
+}
+
+
+def draw_difference(path: Path, picture: Picture, reference: Picture) -> None:
+    """Writes a PNG: A, B, and A - B in false colors with a scale bar in percent of the brightest pixel of B."""
+    peak = float(np.nanmax(np.where(np.isfinite(reference), reference, np.nan)))
+    difference = np.nan_to_num((picture - reference).mean(axis=2), posinf=0.0, neginf=0.0) / max(peak, 1e-30)
+    scale = max(float(np.quantile(np.abs(difference), 0.995)), 1e-6)
+    # Both pictures get the same exposure: the brighter tenth of the reference is just not white.
+    exposure = 0.9 / max(float(np.quantile(np.nan_to_num(reference), 0.9)), 1e-30)
+    panels = [
+        _titled("A", _display(picture * exposure)),
+        _titled("B", _display(reference * exposure)),
+        _titled("A-B", _false_color(difference / scale)),
+    ]
+    strip = _beside(panels)
+    _write_png(path, np.concatenate([strip, _scale_bar(strip.shape[1], 100.0 * scale)]))
+
+
+def _display(picture: Picture) -> Pixels:
+    """Linear to sRGB, eight bits."""
+    linear = np.clip(np.nan_to_num(picture), 0.0, 1.0)
+    encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return (encoded * 255.0 + 0.5).astype(np.uint8)
+
+
+def _false_color(values: npt.NDArray[np.floating]) -> Pixels:
+    """Values from -1 to 1 as colors."""
+    channels = [np.interp(values, _STOPS, [color[i] for color in _COLORS]) for i in range(3)]
+    return (np.stack(channels, axis=-1) * 255.0 + 0.5).astype(np.uint8)
+
+
+def _blank(height: int, width: int) -> Pixels:
+    return np.full((height, width, 3), _BACKGROUND, np.uint8)
+
+
+def _text(text: str) -> Pixels:
+    """White letters on the background."""
+    picture = _blank(5 + 4, 4 * len(text))
+    for index, letter in enumerate(text):
+        for row, bits in enumerate(_GLYPHS[letter]):
+            for column in range(3):
+                if int(bits) >> (2 - column) & 1:
+                    picture[row + 2, 4 * index + column] = 255
+    return np.repeat(np.repeat(picture, _TEXT_SCALE, axis=0), _TEXT_SCALE, axis=1)
+
+
+def _titled(title: str, picture: Pixels) -> Pixels:
+    text = _text(title)
+    band = _blank(text.shape[0], max(picture.shape[1], text.shape[1]))
+    band[:, : text.shape[1]] = text
+    body = _blank(picture.shape[0], band.shape[1])
+    body[:, : picture.shape[1]] = picture
+    return np.concatenate([band, body])
+
+
+def _beside(panels: list[Pixels]) -> Pixels:
+    gap = _blank(panels[0].shape[0], _GAP)
+    parts = [part for panel in panels for part in (panel, gap)]
+    return np.concatenate(parts[:-1], axis=1)
+
+
+def _scale_bar(width: int, percent: float) -> Pixels:
+    """The colors from -percent to +percent, with their values below."""
+    labels = [_text(f"{value:+.3g}%" if abs(percent) < 1e4 else "0") for value in (-percent, 0.0, percent)]
+    width = max(width, sum(label.shape[1] for label in labels) + 2 * _GAP)
+    ramp = _false_color(np.linspace(-1.0, 1.0, width))
+    bar = np.broadcast_to(ramp, (_BAR_HEIGHT, width, 3))
+    row = _blank(labels[0].shape[0], width)
+    starts = (0, (width - labels[1].shape[1]) // 2, width - labels[2].shape[1])
+    for start, label in zip(starts, labels, strict=True):
+        row[:, start : start + label.shape[1]] = label
+    return np.concatenate([_blank(_GAP, width), bar, row])
+
+
+def _write_png(path: Path, pixels: Pixels) -> None:
+    """An 8-bit RGB PNG (ISO/IEC 15948)."""
+    height, width, _ = pixels.shape
+    rows = b"".join(b"\0" + row.tobytes() for row in pixels)
+    parts = {
+        b"IHDR": struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0),
+        b"IDAT": zlib.compress(rows),
+        b"IEND": b"",
+    }
+    chunks = (
+        struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+        for kind, content in parts.items()
+    )
+    try:
+        path.write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(chunks))
+    except OSError as error:
+        raise CommandError(f"{path} cannot be written: {error.strerror}") from error
