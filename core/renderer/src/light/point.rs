@@ -66,37 +66,21 @@ impl PointLamp {
             let wi = to.try_normalize()?;
             let radiance_over_pdf = self.intensity * self.attenuation(-wi) / (distance * distance);
             LightSample { wi, distance, radiance_over_pdf, pdf: 1.0, is_delta: true }
-        } else if self.soft {
-            self.sample_disk(to, u)
-        } else if to.length_squared() > self.radius * self.radius {
-            self.sample_cone(to, u)
-        } else {
+        } else if self.is_inside(to) {
             self.sample_inside(to, u)
+        } else {
+            self.sample_cone(to, u)
         };
         (!sample.radiance_over_pdf.is_black() && sample.radiance_over_pdf.is_finite()).then_some(sample)
     }
 
-    fn sample_disk(&self, to: Vec3, u: [f32; 2]) -> LightSample {
-        let facing = to.try_normalize().unwrap_or(Vec3::Z);
-        let along = to + Frame::new(facing).from_local((warp::disk(u) * self.radius).extend(0.0));
-        let distance = along.length();
-        let wi = along / distance;
-        let cos = wi.dot(facing);
-        let radiance_over_pdf = self.intensity * (self.attenuation(-wi) * cos / (distance * distance));
-        LightSample { wi, distance, radiance_over_pdf, pdf: self.disk_pdf(distance, cos), is_delta: false }
-    }
-
+    /// From outside, sphere and disk are round: directions are spread evenly over the cone they fill.
     fn sample_cone(&self, to: Vec3, u: [f32; 2]) -> LightSample {
-        let distance_to_center = to.length();
         let visible = self.visible_cone(to.length_squared());
-        let (wi, height) = warp::cone(to / distance_to_center, visible, u);
-        let sin_squared = height * (2.0 - height);
-        let half_chord = (self.radius * self.radius - distance_to_center * distance_to_center * sin_squared)
-            .max(0.0)
-            .sqrt();
+        let (wi, height) = warp::cone(to.try_normalize().unwrap_or(Vec3::Z), visible, u);
         LightSample {
             wi,
-            distance: distance_to_center * (1.0 - height) - half_chord,
+            distance: self.distance(to.length(), height),
             radiance_over_pdf: self.radiance() * (self.attenuation(-wi) * TAU * visible),
             pdf: 1.0 / (TAU * visible),
             is_delta: false,
@@ -106,11 +90,9 @@ impl PointLamp {
     /// Inside the sphere all directions see it; the cone of a spot does not count there (as in Cycles).
     fn sample_inside(&self, to: Vec3, u: [f32; 2]) -> LightSample {
         let wi = warp::sphere(u);
-        let along = to.dot(wi);
-        let half_chord = (self.radius * self.radius - (to - wi * along).length_squared()).max(0.0).sqrt();
         LightSample {
             wi,
-            distance: along + half_chord,
+            distance: self.distance_inside(to, wi),
             radiance_over_pdf: self.radiance() * (4.0 * PI),
             pdf: 0.25 * FRAC_1_PI,
             is_delta: false,
@@ -120,33 +102,18 @@ impl PointLamp {
     /// Where the ray meets the lamp.
     pub(super) fn crossing(&self, ray: &Ray) -> Option<Crossing> {
         let to = self.center - ray.from;
-        let along = to.dot(ray.wi);
-        let r_squared = self.radius * self.radius;
-        let (distance, attenuation, pdf) = if self.soft {
-            let facing = to.try_normalize().unwrap_or(Vec3::Z);
-            let cos = ray.wi.dot(facing);
-            let distance = to.length() / cos;
-            let misses = cos <= 0.0 || (ray.wi * distance - to).length_squared() > r_squared;
-            if misses {
-                return None;
-            }
-            (distance, self.attenuation(-ray.wi), self.disk_pdf(distance, cos))
+        let (distance, attenuation, pdf) = if self.is_inside(to) {
+            (self.distance_inside(to, ray.wi), 1.0, 0.25 * FRAC_1_PI)
         } else {
-            let half_chord_squared = r_squared - (to - ray.wi * along).length_squared();
-            if half_chord_squared < 0.0 {
+            let visible = self.visible_cone(to.length_squared());
+            let height = warp::one_minus_cos(to.try_normalize().unwrap_or(Vec3::Z), ray.wi);
+            if height > visible {
                 return None;
             }
-            let half_chord = half_chord_squared.sqrt();
-            if to.length_squared() > r_squared {
-                let pdf = 1.0 / (TAU * self.visible_cone(to.length_squared()));
-                (along - half_chord, self.attenuation(-ray.wi), pdf)
-            } else {
-                (along + half_chord, 1.0, 0.25 * FRAC_1_PI)
-            }
+            (self.distance(to.length(), height), self.attenuation(-ray.wi), 1.0 / (TAU * visible))
         };
         let radiance = self.radiance() * attenuation;
-        (distance > 0.0 && distance <= ray.t_max && !radiance.is_black())
-            .then_some(Crossing { radiance, pdf })
+        (distance <= ray.t_max && !radiance.is_black()).then_some(Crossing { radiance, pdf })
     }
 
     /// A photon; every one carries the lamp's whole flux.
@@ -179,13 +146,34 @@ impl PointLamp {
         self.intensity * (FRAC_1_PI / (self.radius * self.radius))
     }
 
-    /// 1 − cos of the half angle under which the sphere is seen from outside.
+    /// True inside a sphere; `to` leads to the center.
+    fn is_inside(&self, to: Vec3) -> bool {
+        !self.soft && to.length_squared() <= self.radius * self.radius
+    }
+
+    /// 1 − cos of half the angle under which the lamp is seen from outside: sin = r / d for a sphere, tan = r / d for a
+    /// disk.
     fn visible_cone(&self, distance_squared: f32) -> f32 {
-        let sin_squared = (self.radius * self.radius / distance_squared).min(1.0);
+        let r_squared = self.radius * self.radius;
+        let hypotenuse_squared = if self.soft { distance_squared + r_squared } else { distance_squared };
+        let sin_squared = (r_squared / hypotenuse_squared).min(1.0);
         sin_squared / (1.0 + (1.0 - sin_squared).sqrt())
     }
 
-    fn disk_pdf(&self, distance: f32, cos: f32) -> f32 {
-        distance * distance * FRAC_1_PI / (self.radius * self.radius * cos)
+    /// Distance to the lamp at 1 − cos = `height` from its center, which is `to_center` away.
+    fn distance(&self, to_center: f32, height: f32) -> f32 {
+        if self.soft {
+            // No farther than the rim, where rounding of a cosine near 0 would show.
+            return (to_center / (1.0 - height)).min(to_center.hypot(self.radius));
+        }
+        let sin_squared = height * (2.0 - height);
+        let half_chord_squared = self.radius * self.radius - to_center * to_center * sin_squared;
+        to_center * (1.0 - height) - half_chord_squared.max(0.0).sqrt()
+    }
+
+    /// Distance from inside the sphere to where `wi` leaves it.
+    fn distance_inside(&self, to: Vec3, wi: Vec3) -> f32 {
+        let along = to.dot(wi);
+        along + (self.radius * self.radius - (to - wi * along).length_squared()).max(0.0).sqrt()
     }
 }
