@@ -62,9 +62,9 @@ def _parse(b_property: Any, text: str) -> Any:
 
 def _is_same(found: Any, value: Any) -> bool:
     if isinstance(value, tuple):
-        return tuple(found) == value
+        return bool(tuple(found) == value)
     if isinstance(value, float):
-        return abs(found - value) <= 1e-6 * max(1.0, abs(value))
+        return bool(abs(found - value) <= 1e-6 * max(1.0, abs(value)))
     return bool(found == value)
 
 

@@ -46,7 +46,8 @@ _GLYPHS = {
 def draw_difference(path: Path, picture: Picture, reference: Picture) -> None:
     """Writes a PNG: A, B, and A - B in false colors with a scale bar in percent of the brightest pixel of B."""
     peak = float(np.nanmax(np.where(np.isfinite(reference), reference, np.nan)))
-    difference = np.nan_to_num((picture - reference).mean(axis=2), posinf=0.0, neginf=0.0) / max(peak, 1e-30)
+    mean = (picture - reference).mean(axis=2, dtype=np.float64)
+    difference = np.nan_to_num(mean, posinf=0.0, neginf=0.0) / max(peak, 1e-30)
     scale = max(float(np.quantile(np.abs(difference), 0.995)), 1e-6)
     # Both pictures get the same exposure: the brighter tenth of the reference is just not white.
     exposure = 0.9 / max(float(np.quantile(np.nan_to_num(reference), 0.9)), 1e-30)
@@ -66,7 +67,7 @@ def _display(picture: Picture) -> Pixels:
     return (encoded * 255.0 + 0.5).astype(np.uint8)
 
 
-def _false_color(values: npt.NDArray[np.floating]) -> Pixels:
+def _false_color(values: npt.NDArray[np.float64]) -> Pixels:
     """Values from -1 to 1 as colors."""
     channels = [np.interp(values, _STOPS, [color[i] for color in _COLORS]) for i in range(3)]
     return (np.stack(channels, axis=-1) * 255.0 + 0.5).astype(np.uint8)

@@ -100,7 +100,7 @@ def _default(b_socket: Any) -> Value:
 
 def _title(b_node: Any) -> str:
     """The node's label, else its name, which is its kind unless the user renamed it."""
-    return b_node.label or b_node.name
+    return str(b_node.label or b_node.name)
 
 
 def _text(value: Value) -> str:
@@ -160,7 +160,7 @@ def _triple(folder: Folder, output: Output, name: str) -> Color:
 
 def _invert(folder: Folder, output: Output) -> Value:
     color = _triple(folder, output, "Color")
-    inverted = tuple(1.0 - channel for channel in color)
+    inverted = (1.0 - color[0], 1.0 - color[1], 1.0 - color[2])
     return _blended("MIX", color, inverted, _number(folder, output, "Fac"))
 
 
@@ -236,8 +236,8 @@ def _rgb_curves(folder: Folder, output: Output) -> Value:
     b_mapping = output.b_node.mapping
     b_mapping.initialize()
     combined = [b_mapping.evaluate(b_mapping.curves[3], channel) for channel in color]
-    changed = tuple(b_mapping.evaluate(b_mapping.curves[i], combined[i]) for i in range(3))
-    return _blended("MIX", color, changed, _number(folder, output, "Fac"))
+    red, green, blue = (b_mapping.evaluate(b_mapping.curves[i], combined[i]) for i in range(3))
+    return _blended("MIX", color, (red, green, blue), _number(folder, output, "Fac"))
 
 
 _NODES: dict[str, Callable[[Folder, Output], Value]] = {

@@ -1,6 +1,5 @@
 """Objects and instances: what is where, made of which materials, seen by which rays."""
 
-from collections.abc import Hashable
 from typing import Any
 
 import numpy as np
@@ -54,14 +53,14 @@ def _export_geometry(context: ExportContext, b_instance: Any) -> None:
     )
 
 
-def _geometry_key(b_object: Any) -> Hashable:
+def _geometry_key(b_object: Any) -> tuple[str, int]:
     """Same key, same triangles. Never a name: instances of geometry nodes all bear their object's.
 
     Objects that share a curve or text may differ in their modifiers, so theirs is the object.
     """
     if b_object.type == "MESH":
-        return b_object.data.as_pointer()
-    return ("object", b_object.original.session_uid)
+        return "mesh", b_object.data.as_pointer()
+    return "object", b_object.original.session_uid
 
 
 def _add_mesh(context: ExportContext, b_object: Any) -> int | None:
@@ -78,7 +77,7 @@ def _add_mesh(context: ExportContext, b_object: Any) -> int | None:
         b_object.to_mesh_clear()
     if arrays is None:
         return None
-    return context.builder.add_mesh(
+    index: int = context.builder.add_mesh(
         b_object.data.name,
         arrays.positions,
         arrays.triangles,
@@ -86,6 +85,7 @@ def _add_mesh(context: ExportContext, b_object: Any) -> int | None:
         arrays.corner_uvs,
         arrays.slots,
     )
+    return index
 
 
 def _materials(context: ExportContext, b_object: Any) -> list[int]:

@@ -95,8 +95,8 @@ def _memory_view(b_collection: Any, name: str, dtype: type[np.generic]) -> npt.N
     address = b_collection[0].as_pointer()
     if b_collection[last].as_pointer() - address != last * 12:
         return None
-    buffer = (ctypes.c_byte * ((last + 1) * 12)).from_address(address)
-    values = np.frombuffer(buffer, dtype).reshape(-1, 3).copy()
+    content = ctypes.string_at(address, (last + 1) * 12)
+    values: npt.NDArray[Any] = np.frombuffer(content, dtype).reshape(-1, 3)
     for index in (0, last):
         if not np.array_equal(values[index], np.array(getattr(b_collection[index], name), dtype)):
             return None

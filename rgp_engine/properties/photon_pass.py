@@ -1,5 +1,8 @@
 """Settings of the photon pass."""
 
+# Blender reads properties from annotations, which are calls and no types.
+# mypy: disable-error-code="valid-type"
+
 import bpy
 
 

@@ -1,5 +1,8 @@
 """Settings of the Radiance Grid Pyramid."""
 
+# Blender reads properties from annotations, which are calls and no types.
+# mypy: disable-error-code="valid-type"
+
 from typing import Any
 
 import bpy
