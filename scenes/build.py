@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
 """Builds the scenes of this folder: `python scenes/build.py [NAME ...]`, all of them by default.
 
 Run it with the oldest Blender that is supported (`bpy==4.2.23` on Python 3.11): later ones open what it saves.
@@ -14,9 +13,14 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from scenes import common, cornell_box, furnace, glossy_cornell, two_rooms  # noqa: E402
+from scenes import common, cornell_box, furnace, glossy_cornell, two_rooms
 
-SCENES = {"cornell_box": cornell_box, "glossy_cornell": glossy_cornell, "two_rooms": two_rooms, "furnace": furnace}
+SCENES = {
+    "cornell_box": cornell_box,
+    "glossy_cornell": glossy_cornell,
+    "two_rooms": two_rooms,
+    "furnace": furnace,
+}
 """By the name of the file."""
 KNOWN_ANSWERS = {"two_rooms": two_rooms.known_answer, "furnace": furnace.known_answer}
 """Scenes whose picture is known without rendering it."""
@@ -25,7 +29,9 @@ KNOWN_ANSWERS = {"two_rooms": two_rooms.known_answer, "furnace": furnace.known_a
 def main() -> None:
     """Builds the scenes named on the command line."""
     parser = argparse.ArgumentParser(description="Build the scenes and their known answers.")
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"one of {', '.join(SCENES)}; all when none is given")
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help=f"one of {', '.join(SCENES)}; all when none is given"
+    )
     names = parser.parse_args().names or list(SCENES)
     if unknown := set(names) - set(SCENES):
         parser.error(f"unknown scene {', '.join(sorted(unknown))}; there are {', '.join(SCENES)}")

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
 """What the scene scripts share: an empty file, polygons, plain materials, a camera, clean settings, saving."""
 
 from __future__ import annotations
@@ -20,8 +19,7 @@ def start_empty_file() -> bpy.types.Scene:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     world = bpy.data.worlds.new("Black")
-    world.use_nodes = True
-    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.0, 0.0, 0.0, 1.0)
+    shader_tree(world).nodes["Background"].inputs["Color"].default_value = (0.0, 0.0, 0.0, 1.0)
     scene.world = world
     set_clean_settings(scene)
     return scene
@@ -51,9 +49,12 @@ def set_clean_settings(scene: bpy.types.Scene, samples: int = 1024) -> None:
 
 
 def add_polygons(
-    name: str, polygons: Sequence[Sequence[Point]], materials: Sequence[bpy.types.Material], slots: Sequence[int] = ()
+    name: str,
+    polygons: Sequence[Sequence[Point]],
+    materials: Sequence[bpy.types.Material],
+    slots: Sequence[int] = (),
 ) -> bpy.types.Object:
-    """A mesh object of flat polygons (corners in metres), none sharing a vertex; `slots` is one material per polygon."""
+    """A mesh object of flat polygons (corners in metres) that share no vertex; `slots` is one material per polygon."""
     mesh = bpy.data.meshes.new(name)
     vertices = [corner for polygon in polygons for corner in polygon]
     faces = []
@@ -91,10 +92,16 @@ def add_object(name: str, data: bpy.types.ID) -> bpy.types.Object:
 def new_material(name: str) -> tuple[bpy.types.Material, bpy.types.NodeTree, bpy.types.NodeSocket]:
     """A material whose tree holds only its output node; the socket is the output's Surface."""
     material = bpy.data.materials.new(name)
-    material.use_nodes = True
-    tree = material.node_tree
+    tree = shader_tree(material)
     tree.nodes.clear()
     return material, tree, tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"]
+
+
+def shader_tree(data: bpy.types.Material | bpy.types.World) -> bpy.types.NodeTree:
+    """The node tree of a new material or world, which Blender 4 makes only when asked to."""
+    if data.node_tree is None:
+        data.use_nodes = True
+    return data.node_tree
 
 
 def diffuse_material(name: str, albedo: Color) -> bpy.types.Material:
@@ -111,7 +118,9 @@ def principled_material(name: str, **sockets: float | Color) -> bpy.types.Materi
     material, tree, surface = new_material(name)
     shader = tree.nodes.new("ShaderNodeBsdfPrincipled")
     for socket, value in sockets.items():
-        shader.inputs[socket.replace("_", " ")].default_value = (*value, 1.0) if isinstance(value, tuple) else value
+        shader.inputs[socket.replace("_", " ")].default_value = (
+            (*value, 1.0) if isinstance(value, tuple) else value
+        )
     tree.links.new(shader.outputs["BSDF"], surface)
     return material
 
@@ -131,7 +140,9 @@ def add_area_lamp(
     return lamp
 
 
-def add_camera(location: Point, rotation: Point, field_of_view: float, resolution: tuple[int, int]) -> bpy.types.Object:
+def add_camera(
+    location: Point, rotation: Point, field_of_view: float, resolution: tuple[int, int]
+) -> bpy.types.Object:
     """The scene's camera: Euler angles and the field of view over the longer side in radians."""
     scene = bpy.context.scene
     camera = bpy.data.cameras.new("Camera")

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
 """The Cornell box as measured at Cornell University, one Blender metre for 100 of its millimetres.
 
 Thirty triangles: five walls and the five upper faces of two blocks. Corners are the published ones
@@ -57,7 +56,9 @@ def add_faces(name: str, faces: list[list[common.Point]], material: bpy.types.Ma
     common.add_polygons(name, [[to_blender(corner) for corner in face] for face in faces], [material])
 
 
-def build_room(short_block: bpy.types.Material, tall_block: bpy.types.Material, white: bpy.types.Material) -> None:
+def build_room(
+    short_block: bpy.types.Material, tall_block: bpy.types.Material, white: bpy.types.Material
+) -> None:
     """Walls, blocks, lamp and camera; the materials of the blocks are the caller's."""
     add_faces("Floor", [FLOOR], white)
     add_faces("Ceiling", [CEILING], white)

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
 """A closed room in which every surface emits just what it fails to reflect: the same radiance everywhere.
 
 A surface of albedo rho that emits (1 - rho) L and is surrounded by radiance L sends out (1 - rho) L + rho L = L. So the

@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
 """A dark room beside a lit one, a thin wall between them: whatever is seen in the dark room has leaked.
 
 Both rooms are open towards the camera and nothing stands outside, so no path of any length joins them: the dark room is

@@ -1,0 +1,221 @@
+"""Tiny scenes, one for each kind of lamp and each simple material: a floor, a ball, one light.
+
+A case is its name and what differs from the others; `build` makes the scene in the running Blender. The ball fills the
+middle of the picture, the floor the rest.
+
+Left out, because Cycles itself has no single answer:
+- a perfectly smooth glass or mirror ball under a point lamp of radius 0 or a sun of angle 0: its caustic has measure
+  zero for a path tracer, which leaves the light out;
+- nodes whose result depends on the sample pattern's order (Ray Portal, volumes in overlapping meshes).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import bpy
+from mathutils import Vector
+
+from scenes import common
+
+RESOLUTION = (48, 48)
+BALL_RADIUS = 0.8
+FLOOR_ALBEDO = (0.6, 0.55, 0.5)
+LAMP_COLOR = (1.0, 0.8, 0.6)
+PLACE, TARGET = (0.9, -0.6, 3.2), (0.15, -0.25, 0.7)
+"""Of a lamp out of the picture, and where it shines."""
+SEEN_PLACE, SEEN_TARGET = (1.0, 0.4, 1.5), (0.2, -1.6, 0.5)
+"""Of a lamp in the picture."""
+REGIONS = {"whole": (0.0, 0.0, 1.0, 1.0), "middle": (0.36, 0.36, 0.64, 0.64)}
+"""Parts of the frame whose means are compared: left, bottom, right, top. The middle shows nothing but the ball."""
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """A Blender lamp above the ball, tilted; `settings` are properties of the light, angles in radians."""
+
+    kind: str
+    energy: float
+    settings: dict[str, Any] = field(default_factory=dict)
+    seen: bool = False
+    """True: the camera sees the lamp's own shape, and the lamp hangs in the picture."""
+
+
+HALF_SPREAD = math.radians(90.0)
+LAMPS = {
+    "point": Lamp("POINT", 200.0, {"shadow_soft_size": 0.0}),
+    "point_soft": Lamp("POINT", 200.0, {"shadow_soft_size": 0.25, "use_soft_falloff": True}),
+    "point_sphere": Lamp("POINT", 200.0, {"shadow_soft_size": 0.25, "use_soft_falloff": False}),
+    "point_seen": Lamp("POINT", 60.0, {"shadow_soft_size": 0.25, "use_soft_falloff": False}, seen=True),
+    "spot": Lamp("SPOT", 300.0, {"shadow_soft_size": 0.0, "spot_size": 0.9, "spot_blend": 0.0}),
+    "spot_blend": Lamp("SPOT", 300.0, {"shadow_soft_size": 0.0, "spot_size": 0.9, "spot_blend": 0.6}),
+    "spot_soft": Lamp(
+        "SPOT",
+        300.0,
+        {"shadow_soft_size": 0.25, "use_soft_falloff": True, "spot_size": 0.9, "spot_blend": 0.6},
+    ),
+    "spot_sphere": Lamp(
+        "SPOT",
+        300.0,
+        {"shadow_soft_size": 0.25, "use_soft_falloff": False, "spot_size": 0.9, "spot_blend": 0.6},
+    ),
+    "sun": Lamp("SUN", 2.0, {"angle": 0.0}),
+    "sun_angle": Lamp("SUN", 2.0, {"angle": math.radians(12.0)}),
+    "area_square": Lamp("AREA", 120.0, {"shape": "SQUARE", "size": 0.9}),
+    "area_rectangle": Lamp("AREA", 120.0, {"shape": "RECTANGLE", "size": 1.4, "size_y": 0.5}),
+    "area_disk": Lamp("AREA", 120.0, {"shape": "DISK", "size": 1.0}),
+    "area_ellipse": Lamp("AREA", 120.0, {"shape": "ELLIPSE", "size": 1.4, "size_y": 0.6}),
+    "area_spread": Lamp("AREA", 60.0, {"shape": "SQUARE", "size": 0.9, "spread": HALF_SPREAD}),
+    "area_disk_spread": Lamp("AREA", 60.0, {"shape": "DISK", "size": 1.0, "spread": HALF_SPREAD}),
+    "area_seen": Lamp("AREA", 60.0, {"shape": "RECTANGLE", "size": 0.6, "size_y": 0.4}, seen=True),
+}
+"""By name; `emissive_quad` and `world` stand beside them in `LAMP_CASES`."""
+
+Surface = Callable[[bpy.types.NodeTree], bpy.types.NodeSocket]
+"""Adds nodes to a tree and returns the shader socket that goes to the output."""
+
+
+def shader(node: str, **sockets: float | common.Color) -> Surface:
+    """One shader node; sockets by name with underscores for spaces."""
+
+    def add(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
+        made = tree.nodes.new(f"ShaderNode{node}")
+        for name, value in sockets.items():
+            target = made.inputs[name.replace("_", " ")]
+            target.default_value = (*value, 1.0) if isinstance(value, tuple) else value
+        return made.outputs[0]
+
+    return add
+
+
+def joined(node: str, first: Surface, second: Surface, factor: float | None = None) -> Surface:
+    """Two shaders through a Mix Shader with its factor, or an Add Shader."""
+
+    def add(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
+        made = tree.nodes.new(f"ShaderNode{node}")
+        if factor is not None:
+            made.inputs[0].default_value = factor
+        for socket, part in zip(made.inputs[-2:], (first, second), strict=True):
+            tree.links.new(part(tree), socket)
+        return made.outputs[0]
+
+    return add
+
+
+GOLD = (0.9, 0.7, 0.4)
+BLUE = (0.2, 0.35, 0.7)
+TINT = (0.9, 0.95, 0.8)
+_diffuse = shader("BsdfDiffuse", Color=BLUE)
+MATERIALS: dict[str, Surface] = {
+    "diffuse": _diffuse,
+    "glossy_0.1": shader("BsdfGlossy", Color=GOLD, Roughness=0.1),
+    "glossy_0.3": shader("BsdfGlossy", Color=GOLD, Roughness=0.3),
+    "glossy_0.6": shader("BsdfGlossy", Color=GOLD, Roughness=0.6),
+    "mirror": shader("BsdfGlossy", Color=GOLD, Roughness=0.0),
+    "glass": shader("BsdfGlass", Color=TINT, Roughness=0.0, IOR=1.45),
+    "glass_rough": shader("BsdfGlass", Color=TINT, Roughness=0.4, IOR=1.45),
+    "refraction": shader("BsdfRefraction", Color=TINT, Roughness=0.0, IOR=1.45),
+    "refraction_rough": shader("BsdfRefraction", Color=TINT, Roughness=0.4, IOR=1.45),
+    "transparent": shader("BsdfTransparent", Color=(0.8, 0.5, 0.3)),
+    "transparent_mix": joined("MixShader", _diffuse, shader("BsdfTransparent"), 0.4),
+    "emission": shader("Emission", Color=GOLD, Strength=1.5),
+    "principled_plastic": shader("BsdfPrincipled", Base_Color=BLUE, Roughness=0.4),
+    "principled_matte": shader("BsdfPrincipled", Base_Color=BLUE, Roughness=0.9, Specular_IOR_Level=0.2),
+    "principled_metal": shader("BsdfPrincipled", Base_Color=GOLD, Roughness=0.35, Metallic=1.0),
+    "principled_half_metal": shader("BsdfPrincipled", Base_Color=GOLD, Roughness=0.6, Metallic=0.5),
+    "principled_coat": shader(
+        "BsdfPrincipled", Base_Color=BLUE, Roughness=0.7, Coat_Weight=1.0, Coat_Roughness=0.1, Coat_Tint=TINT
+    ),
+    "principled_transmission": shader(
+        "BsdfPrincipled", Base_Color=TINT, Roughness=0.0, IOR=1.45, Transmission_Weight=1.0
+    ),
+    "principled_rough_transmission": shader(
+        "BsdfPrincipled", Base_Color=TINT, Roughness=0.4, IOR=1.45, Transmission_Weight=1.0
+    ),
+    "principled_alpha": shader("BsdfPrincipled", Base_Color=BLUE, Roughness=0.5, Alpha=0.5),
+    "principled_emission": shader(
+        "BsdfPrincipled", Base_Color=BLUE, Roughness=0.5, Emission_Color=GOLD, Emission_Strength=0.5
+    ),
+    "mix": joined("MixShader", _diffuse, shader("BsdfGlossy", Color=GOLD, Roughness=0.4), 0.3),
+    "add": joined("AddShader", _diffuse, shader("Emission", Color=GOLD, Strength=0.3)),
+}
+"""The ball's surface, by name; each is rendered under a constant world and under a square lamp."""
+
+LIGHTS = ("world", "lamp")
+LAMP_CASES = (*LAMPS, "emissive_quad", "world")
+MATERIAL_CASES = tuple(f"{material}/{light}" for material in MATERIALS for light in LIGHTS)
+CASES = (*(f"lamp/{name}" for name in LAMP_CASES), *(f"material/{name}" for name in MATERIAL_CASES))
+
+
+def build(case: str) -> bpy.types.Scene:
+    """The scene of a case in `CASES`, in place of whatever Blender holds."""
+    kind, name = case.split("/", 1)
+    scene = common.start_empty_file()
+    _add_floor_and_camera()
+    if kind == "lamp":
+        _add_ball(shader("BsdfDiffuse", Color=BLUE))
+        _add_light(name)
+    else:
+        material, light = name.split("/")
+        _add_ball(MATERIALS[material])
+        _add_light("world" if light == "world" else "area_square")
+    return scene
+
+
+def _add_floor_and_camera() -> None:
+    side = 3.0
+    floor = [(-side, -side, 0.0), (side, -side, 0.0), (side, side, 0.0), (-side, side, 0.0)]
+    common.add_polygons("Floor", [floor], [common.diffuse_material("Floor", FLOOR_ALBEDO)])
+    common.add_camera((0.0, -4.0, 2.4), (math.radians(66.0), 0.0, 0.0), math.radians(40.0), RESOLUTION)
+
+
+def _add_ball(surface: Surface) -> None:
+    """A smooth sphere that stands on the floor."""
+    bpy.ops.mesh.primitive_uv_sphere_add(
+        segments=96, ring_count=48, radius=BALL_RADIUS, location=(0.0, 0.0, BALL_RADIUS + 0.001)
+    )
+    ball = bpy.context.object
+    ball.data.polygons.foreach_set("use_smooth", [True] * len(ball.data.polygons))
+    material, tree, output = common.new_material("Ball")
+    tree.links.new(surface(tree), output)
+    ball.data.materials.append(material)
+
+
+def _add_light(name: str) -> None:
+    if name == "world":
+        background = bpy.context.scene.world.node_tree.nodes["Background"]
+        background.inputs["Color"].default_value = (*LAMP_COLOR, 1.0)
+        background.inputs["Strength"].default_value = 0.5
+    elif name == "emissive_quad":
+        _add_emissive_quad()
+    else:
+        _add_lamp(LAMPS[name])
+
+
+def _add_lamp(lamp: Lamp) -> None:
+    light = bpy.data.lights.new("Lamp", lamp.kind)
+    light.energy = lamp.energy
+    light.color = LAMP_COLOR
+    for setting, value in lamp.settings.items():
+        setattr(light, setting, value)
+    thing = common.add_object("Lamp", light)
+    thing.visible_camera = lamp.seen
+    _aim(thing, *((SEEN_PLACE, SEEN_TARGET) if lamp.seen else (PLACE, TARGET)))
+
+
+def _add_emissive_quad() -> None:
+    """Shines from both sides, as any emissive mesh does."""
+    material, tree, surface = common.new_material("Emissive")
+    tree.links.new(shader("Emission", Color=LAMP_COLOR, Strength=40.0)(tree), surface)
+    corners = [(-0.45, -0.45, 0.0), (0.45, -0.45, 0.0), (0.45, 0.45, 0.0), (-0.45, 0.45, 0.0)]
+    quad = common.add_polygons("Quad", [corners], [material])
+    _aim(quad, PLACE, TARGET)
+
+
+def _aim(thing: bpy.types.Object, place: common.Point, target: common.Point) -> None:
+    """Puts a lamp at a place, its -Z towards the target."""
+    thing.location = place
+    thing.rotation_euler = (Vector(target) - Vector(place)).to_track_quat("-Z", "Y").to_euler()

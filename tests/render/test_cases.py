@@ -1,0 +1,34 @@
+"""Every lamp and every simple material alone against Cycles: means of the whole picture and of the middle of the ball."""
+
+import json
+
+import numpy as np
+import pytest
+
+from tests.render import cases, pictures
+from tests.render.make_references import REFERENCES
+
+TOLERANCE = 0.01
+"""Of the mean over the channels."""
+SETTINGS = {"gather.rays": 64, "gather.camera_samples": 64, "photon_pass.photon_count": 200_000}
+STANDARD_ERRORS = 3.0
+"""Of the reference, granted beside the tolerance."""
+
+
+@pytest.fixture(scope="module")
+def references() -> dict[str, dict[str, dict[str, list[float]]]]:
+    return json.loads((REFERENCES / "cases.json").read_text())["cases"]
+
+
+@pytest.mark.parametrize("case", cases.CASES)
+def test_case_has_the_mean_of_cycles(
+    case: str, references: dict[str, dict[str, dict[str, list[float]]]]
+) -> None:
+    scene = cases.build(case)
+    pictures.use_rgp(scene, SETTINGS)
+    picture = pictures.render(scene)["Combined"]
+    for region, box in cases.REGIONS.items():
+        reference = references[case][region]
+        found, expected = pictures.mean(pictures.part(picture, box)), np.array(reference["mean"])
+        allowed = TOLERANCE * expected.mean() + STANDARD_ERRORS * np.array(reference["standard_error"])
+        assert (np.abs(found - expected) < allowed).all(), f"{region}: {found / expected} of {expected}"
