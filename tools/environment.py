@@ -67,7 +67,7 @@ def make_blender(bpy: str) -> Path:
     if not checked.exists():
         binary = next((VENVS / name / "lib").glob("python*/site-packages/bpy/__init__*.so"))
         check_libraries(binary)
-        require([python, "-c", "import bpy"])
+        require([python, "-c", "import os, bpy; os._exit(0)"])  # bpy 4.5 may hang in its exit handlers
         checked.touch()
     install_core(name, wheel)
     return python

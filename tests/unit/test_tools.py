@@ -107,5 +107,5 @@ def test_wheels_are_listed_before_the_first_table_of_the_manifest() -> None:
 
 
 def test_the_embree_wheel_is_pinned_by_hash() -> None:
-    lock = "a==1 \\\n    --hash=sha256:aa\nembreex==4.4 \\\n    --hash=sha256:bb \\\n    --hash=sha256:cc\n    # via x\n"
-    assert embreex_requirement(lock) == "embreex==4.4 \\\n    --hash=sha256:bb \\\n    --hash=sha256:cc\n"
+    entry = "embreex==4.4 \\\n    --hash=sha256:bb \\\n    --hash=sha256:cc\n"
+    assert embreex_requirement(f"a==1 \\\n    --hash=sha256:aa\n{entry}    # via x\nz==1\n") == entry
