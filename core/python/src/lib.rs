@@ -1,1 +1,49 @@
-//! placeholder
+//! The Python door: what `rgp_core` exports, and nothing else. The typed surface is `rgp_core.pyi`.
+#![forbid(unsafe_code)]
+
+mod errors;
+mod scene;
+mod session;
+
+use std::path::PathBuf;
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rgp_renderer::embree_version as version_of;
+use rgp_renderer::settings::RenderSettings;
+
+use errors::to_python;
+
+/// Every setting with its range, default, unit and meaning.
+#[pyfunction]
+fn settings_schema(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    Ok(pythonize::pythonize(py, &RenderSettings::schema())?)
+}
+
+/// Raises when a group, a name or a value is not allowed.
+#[pyfunction]
+fn check_settings(settings: &Bound<'_, PyDict>) -> PyResult<()> {
+    session::parse_settings(settings).map(|_| ())
+}
+
+/// Version of the Embree library at a path.
+#[pyfunction]
+fn embree_version(embree_library: PathBuf) -> PyResult<String> {
+    let (major, minor, patch) = version_of(&embree_library).map_err(to_python)?;
+    Ok(format!("{major}.{minor}.{patch}"))
+}
+
+#[pymodule]
+fn rgp_core(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    m.add("RenderError", m.py().get_type::<errors::RenderError>())?;
+    m.add("SceneError", m.py().get_type::<errors::SceneError>())?;
+    m.add("SettingsError", errors::settings_error(m.py())?)?;
+    m.add("EmbreeError", m.py().get_type::<errors::EmbreeError>())?;
+    m.add_function(wrap_pyfunction!(settings_schema, m)?)?;
+    m.add_function(wrap_pyfunction!(check_settings, m)?)?;
+    m.add_function(wrap_pyfunction!(embree_version, m)?)?;
+    m.add_class::<scene::SceneBuilder>()?;
+    m.add_class::<scene::Scene>()?;
+    m.add_class::<session::Session>()
+}

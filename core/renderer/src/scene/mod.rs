@@ -5,13 +5,15 @@
 //! by the square of the length scale, so that power over squared distance still is irradiance in W·m⁻².
 
 mod builder;
+mod mesh;
 pub mod record;
 
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3, Vec3};
 
-pub use builder::{MeshArrays, SceneBuilder};
+pub use builder::SceneBuilder;
+pub use mesh::MeshArrays;
 pub use record::{LampShape, Projection, visibility};
 
 use crate::color::Rgb;

@@ -134,6 +134,15 @@ pub struct MaterialRecord {
     pub closures: Vec<WeightedClosure>,
 }
 
+impl MaterialRecord {
+    /// Blender's surface for objects without a material.
+    #[must_use]
+    pub fn default_gray() -> Self {
+        let closure = ClosureRecord::Diffuse { color: Rgb::splat(0.8) };
+        Self { name: "Default".into(), closures: vec![WeightedClosure { weight: Rgb::WHITE, closure }] }
+    }
+}
+
 /// Shape of a lamp and what depends on it. Emission is along local −Z, as Blender's lamps are.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]

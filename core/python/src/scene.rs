@@ -1,0 +1,150 @@
+//! Building a scene from numpy arrays and plain dictionaries.
+
+use std::sync::Arc;
+
+use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use rgp_renderer::error::RenderError;
+use rgp_renderer::scene::{self as core, MeshArrays, record};
+use serde::de::DeserializeOwned;
+
+use crate::errors::{SceneError, to_python};
+
+/// Takes the parts of a scene in any order; `finish` checks them.
+#[pyclass(module = "rgp_core")]
+#[derive(Default)]
+pub(crate) struct SceneBuilder(core::SceneBuilder);
+
+/// A checked scene.
+#[pyclass(module = "rgp_core", frozen)]
+pub(crate) struct Scene(pub(crate) Arc<core::Scene>);
+
+#[pymethods]
+impl SceneBuilder {
+    #[new]
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn add_material(&mut self, record: &Bound<'_, PyDict>) -> PyResult<usize> {
+        Ok(self.0.add_material(parse(record, "material")?))
+    }
+
+    #[pyo3(signature = (name, positions, triangles, corner_normals=None, corner_uvs=None, slots=None))]
+    fn add_mesh(
+        &mut self,
+        name: String,
+        positions: PyReadonlyArrayDyn<'_, f32>,
+        triangles: PyReadonlyArrayDyn<'_, u32>,
+        corner_normals: Option<PyReadonlyArrayDyn<'_, f32>>,
+        corner_uvs: Option<PyReadonlyArrayDyn<'_, f32>>,
+        slots: Option<PyReadonlyArrayDyn<'_, u16>>,
+    ) -> PyResult<usize> {
+        let arrays = MeshArrays {
+            positions: rows(&name, "positions", &positions, &[3])?,
+            triangles: rows(&name, "triangles", &triangles, &[3])?,
+            corner_normals: match corner_normals {
+                Some(array) => corners(rows::<f32, 9>(&name, "corner_normals", &array, &[3, 3])?),
+                None => Vec::new(),
+            },
+            corner_uvs: match corner_uvs {
+                Some(array) => corners(rows::<f32, 6>(&name, "corner_uvs", &array, &[3, 2])?),
+                None => Vec::new(),
+            },
+            slots: match slots {
+                Some(array) => rows::<u16, 1>(&name, "slots", &array, &[])?.into_flattened(),
+                None => Vec::new(),
+            },
+            name,
+        };
+        self.0.add_mesh(arrays).map_err(to_python)
+    }
+
+    fn add_object(
+        &mut self,
+        name: &str,
+        mesh: usize,
+        world_from_object: PyReadonlyArrayDyn<'_, f64>,
+        materials: Vec<u32>,
+        visibility: u32,
+    ) -> PyResult<usize> {
+        let matrix: Vec<[f64; 4]> = rows(name, "world_from_object", &world_from_object, &[4])?;
+        let matrix: [[f64; 4]; 4] = matrix
+            .try_into()
+            .map_err(|_| SceneError::new_err(format!("'{name}': world_from_object is not 4 x 4")))?;
+        self.0.add_object(name, mesh, record::matrix(&matrix), materials, visibility).map_err(to_python)
+    }
+
+    fn add_lamp(&mut self, record: &Bound<'_, PyDict>) -> PyResult<usize> {
+        Ok(self.0.add_lamp(parse(record, "lamp")?))
+    }
+
+    fn set_camera(&mut self, record: &Bound<'_, PyDict>) -> PyResult<()> {
+        self.0.set_camera(parse(record, "camera")?);
+        Ok(())
+    }
+
+    fn set_world(&mut self, record: &Bound<'_, PyDict>) -> PyResult<()> {
+        self.0.set_world(parse(record, "world")?);
+        Ok(())
+    }
+
+    fn finish(&mut self, py: Python<'_>) -> PyResult<Scene> {
+        let builder = std::mem::take(&mut self.0);
+        let scene = py.detach(|| builder.finish()).map_err(to_python)?;
+        Ok(Scene(Arc::new(scene)))
+    }
+}
+
+#[pymethods]
+impl Scene {
+    #[getter]
+    fn problems<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        Ok(pythonize::pythonize(py, &self.0.problems)?.cast_into::<PyList>()?)
+    }
+
+    #[getter]
+    fn triangle_count(&self) -> usize {
+        self.0.objects.iter().map(|object| object.mesh.triangles.len()).sum()
+    }
+}
+
+/// A record from a dictionary; a wrong key or type says which.
+fn parse<T: DeserializeOwned>(record: &Bound<'_, PyDict>, what: &str) -> PyResult<T> {
+    pythonize::depythonize(record.as_any()).map_err(|e| {
+        let name = record.get_item("name").ok().flatten().map_or(String::new(), |name| format!(" '{name}'"));
+        to_python(RenderError::Scene(format!("{what}{name}: {e}")))
+    })
+}
+
+/// An array of shape (n, *inner) as n rows of N values.
+fn rows<T: numpy::Element + Copy + Default, const N: usize>(
+    name: &str,
+    what: &str,
+    array: &PyReadonlyArrayDyn<'_, T>,
+    inner: &[usize],
+) -> PyResult<Vec<[T; N]>> {
+    let shape = array.shape();
+    if shape.len() != inner.len() + 1 || &shape[1..] != inner {
+        let wanted: String = inner.iter().map(|n| format!(", {n}")).collect();
+        let message = format!("mesh '{name}': {what} has the shape {shape:?}; it should be (n{wanted})");
+        return Err(SceneError::new_err(message));
+    }
+    let mut out = vec![[T::default(); N]; shape[0]];
+    match array.as_slice() {
+        Ok(values) => out.as_flattened_mut().copy_from_slice(values),
+        Err(_) => {
+            for (to, from) in out.as_flattened_mut().iter_mut().zip(array.as_array().iter()) {
+                *to = *from;
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// Rows of three corners.
+fn corners<const N: usize, const M: usize>(rows: Vec<[f32; N]>) -> Vec<[[f32; M]; 3]> {
+    let corner = |row: &[f32; N], c: usize| std::array::from_fn(|i| row[c * M + i]);
+    rows.iter().map(|row| std::array::from_fn(|c| corner(row, c))).collect()
+}

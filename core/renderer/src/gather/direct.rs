@@ -1,0 +1,101 @@
+//! Next-event estimation: light that comes straight from a lamp or an emissive mesh.
+
+use crate::accel::{OFFSET, Ray};
+use crate::bsdf::{LobeSet, TransportMode};
+use crate::color::Rgb;
+use crate::light::DirectSample;
+use crate::lit_scene::{LitScene, Surface, lobes_lit};
+use crate::sampling::balance_heuristic;
+use crate::scene::visibility;
+
+/// Transparent surfaces a shadow ray passes before it counts as blocked.
+const MAX_TRANSPARENT: u32 = 64;
+
+/// How many directions two competing techniques draw: lights sampled, and directions of the BSDF.
+#[derive(Clone, Copy, Debug)]
+pub struct Shares {
+    /// Directions towards lights.
+    pub light: f32,
+    /// Directions of the BSDF.
+    pub bsdf: f32,
+}
+
+impl Shares {
+    /// One of each.
+    pub const EVEN: Self = Self { light: 1.0, bsdf: 1.0 };
+
+    /// Weight of light met by a BSDF sample of density `pdf`, which next-event estimation finds with `pdf_light`.
+    #[must_use]
+    pub fn of_bsdf(self, pdf: f32, pdf_light: f32) -> f32 {
+        balance_heuristic(self.bsdf * pdf, self.light * pdf_light)
+    }
+}
+
+/// A shadow ray and what arrives if nothing blocks it.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadowRay {
+    /// From the surface to the light.
+    pub ray: Ray,
+    /// Where the light is.
+    pub t_far: f32,
+    /// Radiance towards the viewer if the light is seen, weighted against BSDF samples.
+    pub radiance: Rgb,
+    /// False: the light passes through everything.
+    pub casts_shadow: bool,
+}
+
+/// The shadow ray for a light sample; `None` where the surface does not send this light to the viewer.
+#[must_use]
+pub fn shadow_ray(
+    surface: &Surface<'_>,
+    sample: &DirectSample,
+    lobes: LobeSet,
+    shares: Shares,
+) -> Option<ShadowRay> {
+    let bsdf = &surface.bsdf;
+    let lit = lobes.without(LobeSet::ALL.without(lobes_lit(sample.visibility)));
+    let f = bsdf.eval(sample.wi, lit, TransportMode::Radiance);
+    if f.is_black() {
+        return None;
+    }
+    let weight = if sample.is_delta {
+        1.0
+    } else {
+        let pdf_bsdf = bsdf.pdf(sample.wi, lobes);
+        balance_heuristic(shares.light * sample.pdf_solid_angle, shares.bsdf * pdf_bsdf)
+    };
+    let cos = sample.wi.dot(bsdf.frame.ns).abs();
+    let radiance = f * sample.radiance_over_pdf * (cos * weight);
+    let ray = Ray::leaving(surface.p, surface.ng, sample.wi, visibility::SHADOW);
+    Some(ShadowRay { ray, t_far: reach(sample.distance), radiance, casts_shadow: sample.casts_shadow })
+}
+
+/// A shadow ray ends before the light's own surface.
+fn reach(distance: f32) -> f32 {
+    (distance * (1.0 - 1e-5) - 4.0 * OFFSET).max(0.0)
+}
+
+/// Share of light that reaches the end of a shadow ray through transparent surfaces.
+#[must_use]
+pub fn transmittance(lit: &LitScene<'_>, shadow: &ShadowRay, rays: &mut u64) -> Rgb {
+    if !shadow.casts_shadow {
+        return Rgb::WHITE;
+    }
+    if !lit.plan.transparency {
+        *rays += 1;
+        return if lit.accel.occluded(&shadow.ray, shadow.t_far) { Rgb::BLACK } else { Rgb::WHITE };
+    }
+    let (mut ray, mut left, mut through) = (shadow.ray, shadow.t_far, Rgb::WHITE);
+    for _ in 0..MAX_TRANSPARENT {
+        *rays += 1;
+        let Some(hit) = lit.accel.intersect(&ray).filter(|hit| hit.t < left) else { return through };
+        let surface = lit.surface(&ray, hit);
+        through *= surface.bsdf.transparency;
+        if through.is_black() {
+            return through;
+        }
+        left -= hit.t;
+        ray = Ray::leaving(surface.p, surface.ng, ray.direction, ray.mask);
+    }
+    Rgb::BLACK
+}

@@ -1,0 +1,215 @@
+//! Rays that are followed one by one: through transparent surfaces, off mirrors and glass, and on from gather hits that
+//! are too near to be read from the pyramid.
+//!
+//! Path classes are a partition: at every vertex each lobe is either read from the pyramid or followed, never both.
+
+use crate::accel::{Hit, Ray};
+use crate::bsdf::{LobeSet, TransportMode};
+use crate::color::Rgb;
+use crate::lit_scene::{Surface, ray_kind};
+use crate::sampling::Rng;
+use crate::scene::visibility;
+
+use super::Gatherer;
+use super::direct::{Shares, shadow_ray, transmittance};
+use crate::stats::RayCounts;
+
+/// Transparent surfaces a ray passes before it ends.
+const MAX_TRANSPARENT: u32 = 64;
+
+/// Throughput below this is left to roulette.
+const ROULETTE_BELOW: f32 = 0.5;
+
+/// How a direction was found, for the weight of the light it meets.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampled {
+    /// Density per solid angle; `None` for mirrors, glass and the camera, which no light sample competes with.
+    pub pdf: Option<f32>,
+    /// Samples of either technique.
+    pub shares: Shares,
+    /// Kind of the ray, a bit of [`visibility`].
+    pub kind: u32,
+}
+
+impl Sampled {
+    fn weight(&self, pdf_light: f32) -> f32 {
+        self.pdf.map_or(1.0, |pdf| self.shares.of_bsdf(pdf, pdf_light))
+    }
+}
+
+/// What a ray met.
+#[derive(Debug)]
+pub struct Met<'a> {
+    /// Light from lamps, emissive surfaces and the world along the ray, weighted.
+    pub light: Rgb,
+    /// The surface at its end; `None` where it left the scene.
+    pub surface: Option<Surface<'a>>,
+    /// Length of the ray.
+    pub distance: f32,
+    /// Share of light from the surface that arrives through what is transparent before it.
+    pub through: Rgb,
+}
+
+/// The solid angle a ray stands for, and how far it came.
+#[derive(Clone, Copy, Debug)]
+pub struct Footprint {
+    /// Solid angle (sr); 0 reads the finest cells.
+    pub solid_angle: f32,
+    /// Length so far (scene units).
+    pub travelled: f32,
+    /// Mirror-like: what is seen must be shaded, not read, unless the footprint covers a cell.
+    pub sharp: bool,
+}
+
+impl<'a> Gatherer<'a> {
+    /// Follows a ray to the surface it ends at. `first` is its first hit if that is known already.
+    pub fn meet(&self, mut ray: Ray, first: Option<Option<Hit>>, sampled: Sampled, rng: &mut Rng) -> Met<'a> {
+        let mut met = Met { light: Rgb::BLACK, surface: None, distance: 0.0, through: Rgb::WHITE };
+        let (from, lit) = (ray.origin, self.lit);
+        let mut known = first;
+        for _ in 0..MAX_TRANSPARENT {
+            let mut hit = known.take().unwrap_or_else(|| lit.accel.intersect(&ray));
+            if hit.is_some_and(|hit| lit.accel.is_lamp(hit.object)) {
+                hit = lit.accel.intersect(&Ray { mask: ray.mask & !visibility::LAMP, ..ray });
+                let reach = hit.map_or(f32::INFINITY, |hit| hit.t);
+                let through = met.through;
+                lit.lights.lamps_crossed(
+                    ray.origin,
+                    ray.direction,
+                    reach,
+                    sampled.kind,
+                    &mut |radiance, pdf| {
+                        met.light += through * radiance * sampled.weight(pdf);
+                    },
+                );
+            }
+            let Some(hit) = hit else {
+                met.light += met.through * self.escaped(&ray, sampled);
+                return met;
+            };
+            let surface = lit.surface(&ray, hit);
+            met.distance += hit.t;
+            if !surface.bsdf.emission.is_black() {
+                let pdf = lit.lights.emitter_pdf(
+                    from,
+                    hit.object,
+                    hit.primitive,
+                    ray.direction,
+                    met.distance,
+                    surface.ng,
+                );
+                met.light += met.through * surface.bsdf.emission * sampled.weight(pdf);
+            }
+            let transparency = surface.bsdf.transparency;
+            let chance = transparency.mean().clamp(0.0, 1.0);
+            if chance <= 0.0 || rng.next() >= chance {
+                met.through = met.through * (1.0 / (1.0 - chance).max(f32::MIN_POSITIVE));
+                met.surface = Some(surface);
+                return met;
+            }
+            met.through = met.through * transparency * (1.0 / chance);
+            ray = Ray::leaving(surface.p, surface.ng, ray.direction, ray.mask);
+        }
+        met.through = Rgb::BLACK;
+        met
+    }
+
+    /// Light from outside the scene.
+    fn escaped(&self, ray: &Ray, sampled: Sampled) -> Rgb {
+        let world = &self.lit.accel.scene().world;
+        let mut light = if world.visibility & sampled.kind == 0 { Rgb::BLACK } else { world.radiance };
+        // As in Blender, lamps are never seen by the camera itself.
+        if sampled.kind != visibility::CAMERA {
+            self.lit.lights.suns(ray.origin, ray.direction, sampled.kind, &mut |radiance, pdf| {
+                light += radiance * sampled.weight(pdf);
+            });
+        }
+        light
+    }
+
+    /// Radiance leaving `surface` towards where the ray came from, without its emission: read from the pyramid where the
+    /// footprint allows, followed where not.
+    pub fn outgoing(
+        &self,
+        surface: Surface<'a>,
+        footprint: Footprint,
+        rng: &mut Rng,
+        rays: &mut RayCounts,
+    ) -> Rgb {
+        let mut radiance = Rgb::BLACK;
+        let mut throughput = Rgb::WHITE;
+        let (mut surface, mut footprint) = (surface, footprint);
+        for depth in 0..self.max_depth {
+            let lobes = if self.too_short(&surface, footprint) {
+                rays.retraced += 1;
+                LobeSet::ALL
+            } else {
+                radiance += throughput * self.look_up(&surface, footprint);
+                LobeSet::ALL.without(self.read_lobes)
+            };
+            if !surface.bsdf.has(lobes) {
+                break;
+            }
+            if lobes.intersects(LobeSet::NON_DELTA) {
+                radiance += throughput * self.one_light(&surface, lobes, rng, rays);
+            }
+            let sample = surface.bsdf.sample(rng.next(), rng.next2(), lobes, TransportMode::Radiance);
+            let Some(sample) = sample else { break };
+            throughput *= sample.weight;
+            let most = throughput.max_channel();
+            if most < ROULETTE_BELOW || depth > 8 {
+                let survival = most.min(0.95);
+                if rng.next() >= survival {
+                    break;
+                }
+                throughput = throughput * (1.0 / survival);
+            }
+            let kind = ray_kind(&sample);
+            let ray = Ray::leaving(surface.p, surface.ng, sample.wi, kind | self.lit.accel.lamp_bit());
+            rays.gather += 1;
+            let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
+            let met = self.meet(ray, None, Sampled { pdf, shares: Shares::EVEN, kind }, rng);
+            radiance += throughput * met.light;
+            throughput *= met.through;
+            let Some(next) = met.surface else { break };
+            footprint = if sample.is_delta {
+                Footprint { travelled: footprint.travelled + met.distance, sharp: false, ..footprint }
+            } else {
+                Footprint { solid_angle: 0.0, travelled: met.distance, sharp: false }
+            };
+            surface = next;
+        }
+        radiance
+    }
+
+    /// Light of the surface's diffuse and glossy lobes, from the pyramid.
+    fn look_up(&self, surface: &Surface<'_>, footprint: Footprint) -> Rgb {
+        let albedo = surface.bsdf.diffuse_albedo();
+        if albedo.is_black() {
+            return Rgb::BLACK;
+        }
+        let level = self.pyramid.level_for(footprint.solid_angle * footprint.travelled * footprint.travelled);
+        let class = self.pyramid.class(surface.bsdf.frame.ng);
+        albedo * self.pyramid.irradiance(surface.p, class, level) * std::f32::consts::FRAC_1_PI
+    }
+
+    /// True where a look-up would read a cell that the ray's start may lie in, or where a mirror-like ray would see cells.
+    fn too_short(&self, surface: &Surface<'_>, footprint: Footprint) -> bool {
+        let area = footprint.solid_angle * footprint.travelled * footprint.travelled;
+        let cell = self.pyramid.cell_size(surface.p, self.pyramid.level_for(area));
+        let near = footprint.travelled < self.retrace_distance * cell;
+        near || (footprint.sharp && area < cell * cell)
+    }
+
+    /// Direct light at a vertex that is followed: one light sample against one direction of the BSDF.
+    fn one_light(&self, surface: &Surface<'_>, lobes: LobeSet, rng: &mut Rng, rays: &mut RayCounts) -> Rgb {
+        if !self.lit.plan.direct {
+            return Rgb::BLACK;
+        }
+        let u = [rng.next(), rng.next(), rng.next()];
+        let sample = self.lit.lights.sample_direct(surface.p, u);
+        let shadow = sample.and_then(|sample| shadow_ray(surface, &sample, lobes, Shares::EVEN));
+        shadow
+            .map_or(Rgb::BLACK, |shadow| shadow.radiance * transmittance(self.lit, &shadow, &mut rays.shadow))
+    }
+}

@@ -1,0 +1,89 @@
+//! The scene as the passes see it: what is met, how it scatters, what lights it, what is called for.
+
+use glam::{DVec3, Vec3};
+
+use crate::accel::{Accel, Hit, Ray};
+use crate::bsdf::{Bsdf, BsdfSample, LobeSet, PreparedMaterial};
+use crate::effects_plan::EffectsPlan;
+use crate::light::Lights;
+use crate::scene::visibility;
+
+/// Everything a pass asks of the scene.
+pub struct LitScene<'a> {
+    /// The ray tracer.
+    pub accel: Accel<'a>,
+    /// By index of the scene's materials.
+    pub materials: Vec<PreparedMaterial>,
+    /// Lamps, emissive meshes and the world.
+    pub lights: Lights,
+    /// What is called for.
+    pub plan: EffectsPlan,
+}
+
+/// A surface as a ray met it.
+#[derive(Clone, Debug)]
+pub struct Surface<'a> {
+    /// Where.
+    pub p: Vec3,
+    /// The triangle's normal, outward as modelled.
+    pub ng: Vec3,
+    /// How it scatters towards where the ray came from.
+    pub bsdf: Bsdf<'a>,
+    /// Which triangle.
+    pub hit: Hit,
+}
+
+impl<'a> LitScene<'a> {
+    /// The surface behind a hit that is no lamp.
+    #[must_use]
+    pub fn surface(&'a self, ray: &Ray, hit: Hit) -> Surface<'a> {
+        let ng = self.accel.geometric_normal(hit.object, hit.primitive);
+        let ns = self.accel.shading_normal(&hit);
+        let material = &self.materials[self.accel.material(hit.object, hit.primitive)];
+        let bsdf = material.bsdf(-ray.direction, ng, ns);
+        Surface { p: ray.origin + ray.direction * hit.t, ng, bsdf, hit }
+    }
+
+    /// A ray that starts where it enters the scene's bounds: far-off origins cost no precision. Also gives how far the
+    /// origin was moved.
+    #[must_use]
+    pub fn entering(&self, origin: DVec3, direction: Vec3, mask: u32) -> (Ray, f32) {
+        let [low, high] = self.accel.scene().bounds.map(Vec3::as_dvec3);
+        let margin = DVec3::splat(1e-3);
+        let d = direction.as_dvec3();
+        let (to_low, to_high) = ((low - margin - origin) / d, (high + margin - origin) / d);
+        let entry = to_low.min(to_high).max_element();
+        let moved = if entry.is_finite() && entry > 0.0 { entry } else { 0.0 };
+        #[expect(clippy::cast_possible_truncation, reason = "rays are traced in f32")]
+        let moved_f32 = moved as f32;
+        (Ray { origin: (origin + d * moved).as_vec3(), direction, mask }, moved_f32)
+    }
+}
+
+/// The kind of a ray that was sampled from a BSDF, as a bit of [`visibility`].
+#[must_use]
+pub fn ray_kind(sample: &BsdfSample) -> u32 {
+    if sample.is_transmission {
+        visibility::TRANSMISSION
+    } else if sample.class == LobeSet::DIFFUSE {
+        visibility::DIFFUSE
+    } else {
+        visibility::GLOSSY
+    }
+}
+
+/// Lobes that are lit by a light seen only by the ray kinds of `visible_to`.
+#[must_use]
+pub fn lobes_lit(visible_to: u32) -> LobeSet {
+    let mut set = LobeSet::EMPTY;
+    if visible_to & visibility::DIFFUSE != 0 {
+        set = set | LobeSet::DIFFUSE;
+    }
+    if visible_to & visibility::GLOSSY != 0 {
+        set = set | LobeSet::ROUGH;
+    }
+    if visible_to & (visibility::GLOSSY | visibility::TRANSMISSION) != 0 {
+        set = set | LobeSet::SHARP | LobeSet::DELTA;
+    }
+    set
+}

@@ -1,0 +1,186 @@
+//! The photon pass: light from the lamps, followed from surface to surface and added to the pyramid at every landing.
+//!
+//! N photons start with the flux Φᵢ / N, chosen by power. Wherever a photon lands on a diffuse or glossy surface its flux
+//! (before the surface's albedo) is deposited: Σ flux / area estimates the irradiance, direct and indirect, caustics
+//! included (Jensen 1996). Roulette is unbiased; depth is cut only as a safeguard.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::accel::{Hit, Ray};
+use crate::bsdf::{LobeSet, TransportMode};
+use crate::color::Rgb;
+use crate::error::RenderError;
+use crate::lit_scene::{LitScene, lobes_lit, ray_kind};
+use crate::progress::Progress;
+use crate::pyramid::Accumulator;
+use crate::sampling::PhotonSampler;
+use crate::scene::visibility;
+use crate::settings::PhotonPassSettings;
+
+/// Photons of one task: long enough to hide scheduling, short enough to cancel at once.
+const BATCH: u64 = 4096;
+
+/// Highest chance of surviving a landing: an albedo of one would never end.
+const MAX_SURVIVAL: f32 = 0.98;
+
+/// Surfaces the light of a lamp without shadow is followed through.
+const MAX_PASSED_THROUGH: u32 = 64;
+
+/// What the pass counted.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PhotonPassCounts {
+    /// Photons started.
+    pub emitted: u64,
+    /// Segments traced.
+    pub segments: u64,
+}
+
+/// Traces the photons with ids in `0..photon_count`.
+///
+/// # Errors
+/// [`RenderError::Cancelled`].
+pub fn run(
+    lit: &LitScene<'_>,
+    settings: &PhotonPassSettings,
+    seed: u32,
+    accumulator: &Accumulator<'_>,
+    progress: &Progress,
+) -> Result<PhotonPassCounts, RenderError> {
+    let count = settings.photon_count;
+    if !lit.plan.indirect || count == 0 {
+        return Ok(PhotonPassCounts::default());
+    }
+    let (segments, done) = (AtomicU64::new(0), AtomicU64::new(0));
+    #[expect(clippy::cast_precision_loss, reason = "a share of at most 10^9 photons")]
+    let tracer =
+        Tracer { lit, accumulator, share: (1.0 / count as f64) as f32, max_depth: settings.max_depth };
+    (0..count.div_ceil(BATCH)).into_par_iter().try_for_each(|batch| {
+        progress.check()?;
+        let ids = batch * BATCH..((batch + 1) * BATCH).min(count);
+        let traced: u64 = ids.clone().map(|id| tracer.photon(PhotonSampler::new(id, seed))).sum();
+        segments.fetch_add(traced, Ordering::Relaxed);
+        let done = done.fetch_add(ids.end - ids.start, Ordering::Relaxed);
+        #[expect(clippy::cast_precision_loss, reason = "a fraction for a status line")]
+        progress.set_fraction(done as f64 / count as f64);
+        Ok::<(), RenderError>(())
+    })?;
+    Ok(PhotonPassCounts { emitted: count, segments: segments.into_inner() })
+}
+
+struct Tracer<'a> {
+    lit: &'a LitScene<'a>,
+    accumulator: &'a Accumulator<'a>,
+    /// One photon's share of the light.
+    share: f32,
+    max_depth: u32,
+}
+
+impl Tracer<'_> {
+    /// Follows one photon from its lamp; gives the number of segments traced.
+    fn photon(&self, mut sampler: PhotonSampler) -> u64 {
+        let u = [sampler.next(), sampler.next(), sampler.next(), sampler.next(), sampler.next()];
+        let Some(emission) = self.lit.lights.emit(u) else { return 0 };
+        let flux = emission.flux * self.share;
+        let leaving = match emission.normal {
+            Some(normal) => {
+                Ray::leaving(emission.origin, normal, emission.direction, visibility::DIFFUSE).origin
+            }
+            None => emission.origin,
+        };
+        let mask = visibility::DIFFUSE;
+        let (mut ray, mut travelled) = self.lit.entering(leaving.as_dvec3(), emission.direction, mask);
+        let lobes = lobes_lit(emission.visibility);
+        let mut segments = 0;
+        for _ in 0..MAX_PASSED_THROUGH {
+            segments += 1;
+            let Some(hit) = self.lit.accel.intersect(&ray) else { break };
+            travelled += hit.t;
+            if travelled >= emission.lit_from {
+                segments += self.scatter(ray, hit, flux, lobes, &mut sampler);
+            }
+            if emission.casts_shadow {
+                break;
+            }
+            let ng = self.lit.accel.geometric_normal(hit.object, hit.primitive);
+            ray = Ray::leaving(ray.origin + ray.direction * hit.t, ng, ray.direction, mask);
+        }
+        segments
+    }
+
+    /// Deposits at a hit and follows what leaves it, until roulette ends it.
+    fn scatter(
+        &self,
+        mut ray: Ray,
+        mut hit: Hit,
+        mut flux: Rgb,
+        lit_lobes: LobeSet,
+        sampler: &mut PhotonSampler,
+    ) -> u64 {
+        let mut segments = 0;
+        let mut lobes = lit_lobes;
+        for _ in 0..self.max_depth {
+            let surface = self.lit.surface(&ray, hit);
+            let bsdf = &surface.bsdf;
+            if bsdf.has(lobes_read(lobes)) {
+                let stored = flux * bsdf.frame.irradiance_factor(-ray.direction);
+                self.accumulator.deposit(surface.p, bsdf.frame.ng, stored);
+            }
+            let u_lobe = sampler.next();
+            let u = [sampler.next(), sampler.next()];
+            let Some(next) = self.next_direction(&surface.bsdf, ray.direction, lobes, u_lobe, u) else {
+                break;
+            };
+            let survival = next.weight.max_channel().min(MAX_SURVIVAL);
+            if sampler.next() >= survival {
+                break;
+            }
+            flux = flux * next.weight * (1.0 / survival);
+            ray = Ray::leaving(surface.p, surface.ng, next.direction, next.kind);
+            if !next.straight {
+                lobes = LobeSet::ALL;
+            }
+            segments += 1;
+            match self.lit.accel.intersect(&ray) {
+                Some(next_hit) => hit = next_hit,
+                None => break,
+            }
+        }
+        segments
+    }
+
+    fn next_direction(
+        &self,
+        bsdf: &crate::bsdf::Bsdf<'_>,
+        direction: Vec3,
+        lobes: LobeSet,
+        u_lobe: f32,
+        u: [f32; 2],
+    ) -> Option<Next> {
+        let (through, scattered) = (bsdf.transparency.mean(), bsdf.albedo(lobes).mean());
+        let chance = if through > 0.0 { through / (through + scattered) } else { 0.0 };
+        if u_lobe < chance {
+            let weight = bsdf.transparency * (1.0 / chance);
+            return Some(Next { direction, weight, kind: visibility::DIFFUSE, straight: true });
+        }
+        let u_lobe = ((u_lobe - chance) / (1.0 - chance)).min(1.0 - f32::EPSILON);
+        let sample = bsdf.sample(u_lobe, u, lobes, TransportMode::Importance)?;
+        let weight = sample.weight * (1.0 / (1.0 - chance));
+        Some(Next { direction: sample.wi, weight, kind: ray_kind(&sample), straight: false })
+    }
+}
+
+struct Next {
+    direction: Vec3,
+    weight: Rgb,
+    kind: u32,
+    straight: bool,
+}
+
+/// Of the lobes that are lit, those whose light is read from the pyramid.
+fn lobes_read(lit: LobeSet) -> LobeSet {
+    let read = LobeSet::DIFFUSE | LobeSet::ROUGH;
+    lit.without(LobeSet::ALL.without(read))
+}

@@ -1,0 +1,105 @@
+//! Normal classes: which surfaces inside one cell are kept apart.
+//!
+//! Six faces of a cube; optionally nine parts of each, the middle one holding what is aligned with the axis. The class
+//! only says where light is stored; it is never the frame of the direction bins.
+
+use glam::{DVec3, Vec3};
+
+/// How many classes there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NormalClasses {
+    /// The faces of a cube.
+    Six,
+    /// Nine parts of each face.
+    FiftyFour,
+}
+
+/// Normals this close to a border between classes count as on it, so that rounding does not split a flat surface.
+const SNAP: f32 = 1e-3;
+
+impl NormalClasses {
+    /// Number of classes.
+    #[must_use]
+    pub const fn count(self) -> usize {
+        match self {
+            Self::Six => 6,
+            Self::FiftyFour => 54,
+        }
+    }
+
+    /// Class of a unit normal.
+    #[must_use]
+    pub fn of(self, normal: Vec3) -> usize {
+        let a = normal.abs();
+        // Ties go to the earlier axis.
+        let axis = if a.x >= a.y - SNAP && a.x >= a.z - SNAP {
+            0
+        } else if a.y >= a.z - SNAP {
+            1
+        } else {
+            2
+        };
+        let face = axis * 2 + usize::from(normal[axis] < 0.0);
+        match self {
+            Self::Six => face,
+            Self::FiftyFour => {
+                let part = |v: f32| {
+                    let ratio = v / a[axis];
+                    if ratio > 1.0 / 3.0 + SNAP {
+                        2
+                    } else if ratio < -1.0 / 3.0 - SNAP {
+                        0
+                    } else {
+                        1
+                    }
+                };
+                face * 9 + part(normal[(axis + 1) % 3]) * 3 + part(normal[(axis + 2) % 3])
+            }
+        }
+    }
+
+    /// Classes of the two sides of a surface with this (unnormalised) normal.
+    #[must_use]
+    pub fn of_sides(self, normal: DVec3) -> [usize; 2] {
+        let n = normal.normalize_or(DVec3::Z).as_vec3();
+        [self.of(n), self.of(-n)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn classes_are_in_range_and_opposite_sides_differ() {
+        for classes in [NormalClasses::Six, NormalClasses::FiftyFour] {
+            let mut used = vec![false; classes.count()];
+            for i in 0..20_000 {
+                let z = 1.0 - 2.0 * (i as f32 + 0.5) / 20_000.0;
+                let (sin, cos) = (i as f32 * 2.399_963).sin_cos();
+                let n = Vec3::new(cos * (1.0 - z * z).sqrt(), sin * (1.0 - z * z).sqrt(), z);
+                assert_ne!(classes.of(n), classes.of(-n), "{n}");
+                used[classes.of(n)] = true;
+            }
+            assert!(used.iter().all(|&u| u));
+        }
+    }
+
+    #[test]
+    fn rounding_does_not_split_what_is_flat() {
+        for classes in [NormalClasses::Six, NormalClasses::FiftyFour] {
+            for n in [
+                Vec3::X,
+                Vec3::NEG_Z,
+                Vec3::new(1.0, 1.0, 0.0),
+                Vec3::new(1.0, -1.0, 1.0),
+                Vec3::new(0.0, 1.0, -1.0),
+            ] {
+                let n = n.normalize();
+                for noise in [Vec3::new(1e-6, -1e-6, 2e-6), Vec3::new(-3e-6, 1e-6, 1e-6)] {
+                    assert_eq!(classes.of(n), classes.of((n + noise).normalize()), "{n}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! The exact area of a triangle inside each cell, in f64: what flux is divided by.
+
+use arrayvec::ArrayVec;
+use glam::{DVec3, IVec3};
+
+use super::grid::Grid;
+
+/// A triangle cut by at most six planes.
+type Polygon = ArrayVec<DVec3, 12>;
+
+/// Calls `add(level, cell, area)` for every cell in which light of this triangle is stored: the finest that exist where
+/// the parts of the triangle lie. The areas add up to the triangle's (Sutherland and Hodgman 1974, halving cells).
+pub fn clip_triangle(grid: &Grid, corners: [DVec3; 3], add: &mut impl FnMut(usize, IVec3, f64)) {
+    let offsets = corners.map(|p| grid.offset_f64(p));
+    let polygon: Polygon = offsets.into_iter().collect();
+    let (low, high) = extent(&polygon);
+    // The finest cell of any level that holds the whole triangle saves the cuts above it.
+    for level in (0..grid.levels.len()).rev() {
+        let cell_size = cell_size(grid, level);
+        let (first, last) = ((low / cell_size).floor().as_ivec3(), (high / cell_size).floor().as_ivec3());
+        if first == last && grid.levels[level].within(first).is_some() {
+            return descend(grid, level, first, polygon, add);
+        }
+    }
+    let cell_size = cell_size(grid, 0);
+    let (first, last) = ((low / cell_size).floor().as_ivec3(), (high / cell_size).floor().as_ivec3());
+    for z in first.z..=last.z {
+        let slab = cut_range(&polygon, 2, f64::from(z) * cell_size, f64::from(z + 1) * cell_size);
+        for y in first.y..=last.y {
+            let column = cut_range(&slab, 1, f64::from(y) * cell_size, f64::from(y + 1) * cell_size);
+            for x in first.x..=last.x {
+                let part = cut_range(&column, 0, f64::from(x) * cell_size, f64::from(x + 1) * cell_size);
+                descend(grid, 0, IVec3::new(x, y, z), part, add);
+            }
+        }
+    }
+}
+
+fn cell_size(grid: &Grid, level: usize) -> f64 {
+    f64::from(grid.levels[level].cell_size)
+}
+
+fn descend(
+    grid: &Grid,
+    level: usize,
+    lattice: IVec3,
+    polygon: Polygon,
+    add: &mut impl FnMut(usize, IVec3, f64),
+) {
+    if polygon.len() < 3 {
+        return;
+    }
+    let Some(cell) = grid.levels[level].within(lattice) else { return };
+    let finer = grid.levels.get(level + 1).is_some_and(|finer| finer.within(lattice << 1_i32).is_some());
+    if !finer {
+        let area = area(&polygon);
+        if area > 0.0 {
+            add(level, cell, area);
+        }
+        return;
+    }
+    let first_child: IVec3 = lattice << 1;
+    let middle = (first_child + IVec3::ONE).as_dvec3() * cell_size(grid, level + 1);
+    let mut parts: ArrayVec<(IVec3, Polygon), 8> = ArrayVec::new();
+    parts.push((first_child, polygon));
+    for axis in 0..3 {
+        for (child, polygon) in std::mem::take(&mut parts) {
+            let [below, above] = cut(&polygon, axis, middle[axis]);
+            parts.push((child, below));
+            let mut upper = child;
+            upper[axis] += 1;
+            parts.push((upper, above));
+        }
+        parts.retain(|(_, polygon)| polygon.len() >= 3);
+    }
+    for (child, polygon) in parts {
+        descend(grid, level + 1, child, polygon, add);
+    }
+}
+
+/// The parts below and above a plane across `axis`. What lies in the plane belongs above, as `floor` has it.
+fn cut(polygon: &Polygon, axis: usize, plane: f64) -> [Polygon; 2] {
+    let (low, high) = polygon
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
+    if low >= plane {
+        return [Polygon::new(), polygon.clone()];
+    }
+    if high <= plane {
+        return [polygon.clone(), Polygon::new()];
+    }
+    let mut parts = [Polygon::new(), Polygon::new()];
+    for (i, &a) in polygon.iter().enumerate() {
+        let b = polygon[(i + 1) % polygon.len()];
+        let (da, db) = (a[axis] - plane, b[axis] - plane);
+        if da <= 0.0 {
+            parts[0].push(a);
+        }
+        if da >= 0.0 {
+            parts[1].push(a);
+        }
+        if (da < 0.0 && db > 0.0) || (da > 0.0 && db < 0.0) {
+            let mut p = a + (b - a) * (da / (da - db));
+            p[axis] = plane;
+            parts[0].push(p);
+            parts[1].push(p);
+        }
+    }
+    parts
+}
+
+fn cut_range(polygon: &Polygon, axis: usize, low: f64, high: f64) -> Polygon {
+    let [_, above] = cut(polygon, axis, low);
+    let [within, _] = cut(&above, axis, high);
+    within
+}
+
+fn extent(polygon: &Polygon) -> (DVec3, DVec3) {
+    polygon.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
+}
+
+fn area(polygon: &Polygon) -> f64 {
+    let a = polygon[0];
+    let fan = polygon.windows(2).skip(1).map(|edge| (edge[0] - a).cross(edge[1] - a));
+    0.5 * fan.sum::<DVec3>().length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::collections::BTreeMap;
+
+    fn grid() -> Grid {
+        let half = DVec3::splat(0.5);
+        Grid::new([-half * 0.2, half * 0.2], [-half, half], 32, DVec3::new(0.013, -7.0, 3.3))
+    }
+
+    fn total(corners: [DVec3; 3]) -> (f64, usize) {
+        let (mut sum, mut cells) = (0.0, BTreeMap::new());
+        clip_triangle(&grid(), corners, &mut |level, cell, area| {
+            sum += area;
+            *cells.entry((level, cell.to_array())).or_insert(0) += 1;
+        });
+        assert!(cells.values().all(|&times| times == 1), "a triangle meets a cell once");
+        (sum, cells.len())
+    }
+
+    proptest! {
+        #[test]
+        fn areas_add_up(v in proptest::array::uniform9(-0.5..0.5_f64)) {
+            let corners = [DVec3::new(v[0], v[1], v[2]), DVec3::new(v[3], v[4], v[5]), DVec3::new(v[6], v[7], v[8])];
+            let exact = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
+            let (sum, _) = total(corners);
+            prop_assert!((sum - exact).abs() <= 1e-12 + 1e-9 * exact, "{} against {}", sum, exact);
+        }
+    }
+
+    #[test]
+    fn a_triangle_in_a_plane_between_cells_is_counted_once() {
+        let grid = grid();
+        let size = f64::from(grid.levels[grid.finest()].cell_size);
+        let z = size * 30.0;
+        let at = |x: f64, y: f64| grid.offset_f64(DVec3::ZERO) * -1.0 + DVec3::new(x, y, z);
+        let low = grid.offset_f64(DVec3::ZERO);
+        let corners = [at(low.x, low.y), at(low.x + 5.0 * size, low.y), at(low.x, low.y + 5.0 * size)];
+        let (sum, _) = total(corners);
+        assert!((sum - 12.5 * size * size).abs() < 1e-9 * size * size, "{sum}");
+    }
+
+    #[test]
+    fn a_small_triangle_lies_in_one_cell() {
+        let corners = [DVec3::ZERO, DVec3::new(1e-7, 0.0, 0.0), DVec3::new(0.0, 1e-7, 0.0)];
+        let (sum, cells) = total(corners);
+        assert_eq!(cells, 1);
+        assert!((sum - 5e-15).abs() < 1e-20);
+    }
+}

@@ -1,0 +1,201 @@
+//! Where the cells lie: nested boxes of cells, each twice as wide and twice as coarse as the next.
+//!
+//! The finest level covers the seen part of the scene; each coarser level covers twice the width, cut to the scene's
+//! bounds. Light far away is held in cells as coarse as its distance asks for, so that a plane of kilometres round a room
+//! costs a few thousand cells and the room keeps its fine ones. Cells are anchored in the world: they stay put when the
+//! seen part changes.
+
+use glam::{DVec3, IVec3, Vec3};
+
+/// Cells of one level.
+#[derive(Clone, Copy, Debug)]
+pub struct LevelBox {
+    /// Edge of a cell (scene units).
+    pub cell_size: f32,
+    inverse_cell_size: f32,
+    /// Coordinates of the lowest cell.
+    low: IVec3,
+    /// Cells along each axis, a multiple of the brick's edge.
+    pub size: IVec3,
+}
+
+impl LevelBox {
+    /// Cell coordinates within the box, or `None` outside.
+    #[must_use]
+    pub fn cell(&self, offset: Vec3) -> Option<IVec3> {
+        let cell = (offset * self.inverse_cell_size).floor().as_ivec3() - self.low;
+        (cell.cmpge(IVec3::ZERO) & cell.cmplt(self.size)).all().then_some(cell)
+    }
+
+    /// Coordinates in the level's lattice.
+    #[must_use]
+    pub fn lattice(&self, cell: IVec3) -> IVec3 {
+        cell + self.low
+    }
+
+    /// From lattice coordinates to coordinates within the box, `None` outside.
+    #[must_use]
+    pub fn within(&self, lattice: IVec3) -> Option<IVec3> {
+        let cell = lattice - self.low;
+        (cell.cmpge(IVec3::ZERO) & cell.cmplt(self.size)).all().then_some(cell)
+    }
+}
+
+/// The boxes of all levels, coarsest first.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    origin: Vec3,
+    origin_f64: DVec3,
+    /// Level 0 is the coarsest.
+    pub levels: Vec<LevelBox>,
+}
+
+/// Cells per edge of a brick.
+pub const BRICK: i32 = 4;
+
+/// Cells along the seen part below which a level is too coarse to be right (one eighth of the scene).
+const COARSEST_RESOLUTION: f64 = 8.0;
+
+/// Walls modelled at round coordinates must not lie on a border between cells; part of a finest cell.
+const ANCHOR_OFFSET: f64 = 0.381_966;
+
+impl Grid {
+    /// Cells over `seen`, `resolution` along its longest side, and coarser ones over `bounds` around it. `world_origin` is
+    /// the world's origin; all in scene units.
+    #[must_use]
+    pub fn new(seen: [DVec3; 2], bounds: [DVec3; 2], resolution: u32, world_origin: DVec3) -> Self {
+        let extent = (seen[1] - seen[0]).max_element().max(1e-6);
+        let finest = extent / f64::from(resolution.max(1));
+        let center = (seen[0] + seen[1]) * 0.5;
+        let reach = (bounds[1] - center).max(center - bounds[0]).max_element() / extent;
+        let by_resolution = (f64::from(resolution) / COARSEST_RESOLUTION).log2().floor();
+        let by_reach = (2.0 * reach).log2().ceil();
+        let coarsenings = by_resolution.max(by_reach).clamp(0.0, 40.0);
+        let coarsest = finest * coarsenings.exp2();
+        // The lattice point of the coarsest level below everything is the origin of all coordinates.
+        let anchor = world_origin + DVec3::splat(ANCHOR_OFFSET * finest);
+        let lowest = bounds[0].min(seen[0]) - DVec3::splat(coarsest);
+        let origin = anchor + ((lowest - anchor) / coarsest).floor() * coarsest;
+
+        let half = DVec3::splat(extent * 0.5 + finest);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most forty levels")]
+        let count = coarsenings as usize + 1;
+        let levels = (0..count).map(|level| {
+            let scale = ((count - 1 - level) as f64).exp2();
+            let cell_size = finest * scale;
+            let margin = DVec3::splat(cell_size);
+            let low = (center - half * scale).max(bounds[0].min(seen[0]) - margin);
+            let high = (center + half * scale).min(bounds[1].max(seen[1]) + margin);
+            level_box(low - origin, high - origin, cell_size)
+        });
+        let levels = nested(levels.collect());
+        Self { origin: origin.as_vec3(), origin_f64: origin, levels }
+    }
+
+    /// Position relative to the lattice's origin, as [`LevelBox::cell`] wants it.
+    #[must_use]
+    pub fn offset(&self, p: Vec3) -> Vec3 {
+        p - self.origin
+    }
+
+    /// The same in f64, for clipping.
+    #[must_use]
+    pub fn offset_f64(&self, p: DVec3) -> DVec3 {
+        p - self.origin_f64
+    }
+
+    /// Index of the finest level.
+    #[must_use]
+    pub const fn finest(&self) -> usize {
+        self.levels.len() - 1
+    }
+
+    /// The finest level at or above `level` whose box holds the position, with the cell.
+    #[must_use]
+    pub fn locate(&self, offset: Vec3, level: usize) -> Option<(usize, IVec3)> {
+        (0..=level).rev().find_map(|level| Some((level, self.levels[level].cell(offset)?)))
+    }
+
+    /// The cell of the next coarser level that holds `cell`.
+    #[must_use]
+    pub fn parent(&self, level: usize, cell: IVec3) -> Option<IVec3> {
+        let parent = self.levels[level].lattice(cell) >> 1;
+        self.levels[level - 1].within(parent)
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "coordinates count cells of the scene")]
+fn level_box(low: DVec3, high: DVec3, cell_size: f64) -> LevelBox {
+    let brick = f64::from(BRICK) * cell_size;
+    let first = (low / brick).floor().as_ivec3();
+    let last = (high / brick).floor().as_ivec3();
+    LevelBox {
+        cell_size: cell_size as f32,
+        inverse_cell_size: (1.0 / cell_size) as f32,
+        low: first * BRICK,
+        size: (last - first + IVec3::ONE).max(IVec3::ONE) * BRICK,
+    }
+}
+
+/// Widens each level so that it holds the next finer one.
+fn nested(mut levels: Vec<LevelBox>) -> Vec<LevelBox> {
+    for level in (1..levels.len()).rev() {
+        let (low, high) =
+            (levels[level].low >> 1, (levels[level].low + levels[level].size + IVec3::ONE) >> 1);
+        let coarse = &mut levels[level - 1];
+        let first = coarse.low.min(low).div_euclid(IVec3::splat(BRICK));
+        let last =
+            ((coarse.low + coarse.size).max(high) + IVec3::splat(BRICK - 1)).div_euclid(IVec3::splat(BRICK));
+        coarse.low = first * BRICK;
+        coarse.size = (last - first) * BRICK;
+    }
+    levels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid() -> Grid {
+        Grid::new(
+            [DVec3::new(-0.05, -0.02, -0.03), DVec3::new(0.05, 0.03, 0.02)],
+            [DVec3::splat(-0.5), DVec3::splat(0.5)],
+            100,
+            DVec3::new(-12.3, 4.0, 0.2),
+        )
+    }
+
+    #[test]
+    fn boxes_nest_and_cover() {
+        let grid = grid();
+        assert!(
+            (grid.levels[grid.finest()].cell_size - 0.001).abs() < 1e-9,
+            "a hundred cells along the longest side"
+        );
+        for level in 1..grid.levels.len() {
+            let fine = grid.levels[level];
+            for corner in [IVec3::ZERO, fine.size - IVec3::ONE] {
+                assert!(grid.parent(level, corner).is_some(), "level {level}");
+            }
+        }
+        for p in [Vec3::splat(-0.4999), Vec3::splat(0.4999), Vec3::new(0.4999, -0.4999, 0.0)] {
+            let (level, _) = grid.locate(grid.offset(p), grid.finest()).expect("inside the scene");
+            assert!(level < grid.finest(), "far away is coarse");
+        }
+        let (level, _) = grid.locate(grid.offset(Vec3::new(0.049, 0.0, 0.0)), grid.finest()).expect("seen");
+        assert_eq!(level, grid.finest());
+    }
+
+    #[test]
+    fn cells_stay_put_when_the_seen_part_moves() {
+        let bounds = [DVec3::splat(-0.5), DVec3::splat(0.5)];
+        let world = DVec3::new(0.123, 0.0, 0.0);
+        let a = Grid::new([DVec3::splat(-0.1), DVec3::splat(0.1)], bounds, 64, world);
+        let b = Grid::new([DVec3::splat(-0.05), DVec3::splat(0.15)], bounds, 64, world);
+        let boundary = |grid: &Grid, x: f32| {
+            (grid.offset(Vec3::splat(x)) / grid.levels[grid.finest()].cell_size).fract()
+        };
+        let difference = (boundary(&a, 0.03) - boundary(&b, 0.03)).abs();
+        assert!(difference.min_element() < 1e-3 || difference.max_element() > 0.999, "{difference}");
+    }
+}

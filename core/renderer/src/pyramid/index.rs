@@ -1,0 +1,150 @@
+//! From a cell to its place in a packed array: one brick of 4³ cells, one 64-bit mask per normal class, one popcount.
+
+use glam::IVec3;
+
+use super::grid::{BRICK, LevelBox};
+
+/// Which cells of one class of a brick exist, and where the first of them lies.
+#[derive(Clone, Copy, Debug, Default)]
+struct ClassMask {
+    mask: u64,
+    base: u32,
+}
+
+/// The cells of one level that exist.
+#[derive(Clone, Debug)]
+pub struct LevelIndex {
+    /// Brick of every 4³ block of the level's box, [`NO_BRICK`] where there is none.
+    bricks: Vec<u32>,
+    /// One mask per normal class for each brick.
+    masks: Vec<ClassMask>,
+    size: IVec3,
+    classes: usize,
+    len: usize,
+}
+
+const NO_BRICK: u32 = u32::MAX;
+
+/// A cell's place for sorting: brick first, then class, then cell within the brick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CellKey(u64);
+
+impl CellKey {
+    /// Key of a cell (within its level's box) and normal class.
+    #[must_use]
+    #[expect(clippy::cast_sign_loss, reason = "coordinates within a box are not negative")]
+    pub fn new(level: &LevelBox, cell: IVec3, class: usize) -> Self {
+        let (brick, bit) = split(cell, level.size / BRICK);
+        Self((brick as u64) << 16 | (class as u64) << 8 | u64::from(bit))
+    }
+
+    /// The cell and its class.
+    #[must_use]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "the inverse of `new`")]
+    pub fn cell(self, level: &LevelBox) -> (IVec3, usize) {
+        let (brick, class, bit) =
+            ((self.0 >> 16) as i32, (self.0 >> 8) as usize & 0xff, self.0 as i32 & 0x3f);
+        let size = level.size / BRICK;
+        let corner = IVec3::new(brick % size.x, brick / size.x % size.y, brick / (size.x * size.y)) * BRICK;
+        (corner + IVec3::new(bit & 3, (bit >> 2) & 3, bit >> 4), class)
+    }
+}
+
+/// Brick number within the box and bit within the brick.
+#[expect(clippy::cast_sign_loss, reason = "coordinates within a box are not negative")]
+fn split(cell: IVec3, size: IVec3) -> (usize, u32) {
+    let brick: IVec3 = cell >> 2_i32;
+    let inner: IVec3 = cell & 3_i32;
+    let number = (brick.z as usize * size.y as usize + brick.y as usize) * size.x as usize + brick.x as usize;
+    (number, (inner.z << 4 | inner.y << 2 | inner.x) as u32)
+}
+
+impl LevelIndex {
+    /// Index of the cells named by `keys`, which are sorted and unique. Cell `i` of the keys has place `i`.
+    #[must_use]
+    #[expect(clippy::cast_possible_truncation, reason = "fewer than 2^32 cells fit in memory")]
+    pub fn new(level: &LevelBox, classes: usize, keys: impl Iterator<Item = CellKey>) -> Self {
+        let size = level.size / BRICK;
+        let mut bricks = vec![NO_BRICK; size.element_product() as usize];
+        let mut masks: Vec<ClassMask> = Vec::new();
+        let mut len = 0;
+        for key in keys {
+            let (brick, class, bit) =
+                ((key.0 >> 16) as usize, (key.0 >> 8) as usize & 0xff, key.0 as u32 & 0x3f);
+            if bricks[brick] == NO_BRICK {
+                bricks[brick] = (masks.len() / classes) as u32;
+                masks.extend(std::iter::repeat_n(ClassMask::default(), classes));
+            }
+            let entry = &mut masks[bricks[brick] as usize * classes + class];
+            if entry.mask == 0 {
+                entry.base = len as u32;
+            }
+            entry.mask |= 1 << bit;
+            len += 1;
+        }
+        Self { bricks, masks, size, classes, len }
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Place of a cell (within the level's box), `None` where it does not exist.
+    #[must_use]
+    #[inline]
+    pub fn find(&self, cell: IVec3, class: usize) -> Option<usize> {
+        let (brick, bit) = split(cell, self.size);
+        let brick = self.bricks[brick];
+        if brick == NO_BRICK {
+            return None;
+        }
+        let entry = self.masks[brick as usize * self.classes + class];
+        let below = entry.mask & ((1 << bit) - 1);
+        (entry.mask >> bit & 1 == 1).then(|| (entry.base + below.count_ones()) as usize)
+    }
+
+    /// Memory (bytes).
+    #[must_use]
+    pub const fn bytes(&self) -> usize {
+        self.bricks.len() * size_of::<u32>() + self.masks.len() * size_of::<ClassMask>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pyramid::grid::Grid;
+    use glam::DVec3;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_cell_is_found_where_its_key_says() {
+        let half = DVec3::new(0.5, 0.3, 0.1);
+        let grid = Grid::new([-half, half], [-half, half], 37, DVec3::ZERO);
+        let level = grid.levels[grid.finest()];
+        let mut keys = BTreeSet::new();
+        let mut state = 1_u64;
+        for _ in 0..5000 {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            let r = |shift: u64, n: i32| ((state >> shift) % n as u64) as i32;
+            let cell = IVec3::new(r(10, level.size.x), r(25, level.size.y), r(40, level.size.z));
+            keys.insert(CellKey::new(&level, cell, r(50, 6) as usize));
+        }
+        let index = LevelIndex::new(&level, 6, keys.iter().copied());
+        assert_eq!(index.len(), keys.len());
+        for (place, key) in keys.iter().enumerate() {
+            let (cell, class) = key.cell(&level);
+            assert_eq!(CellKey::new(&level, cell, class), *key);
+            assert_eq!(index.find(cell, class), Some(place));
+        }
+        for z in 0..level.size.z {
+            for class in 0..6 {
+                let cell = IVec3::new(3, 5, z);
+                let exists = keys.contains(&CellKey::new(&level, cell, class));
+                assert_eq!(index.find(cell, class).is_some(), exists);
+            }
+        }
+    }
+}

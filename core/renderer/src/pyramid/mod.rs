@@ -1,0 +1,161 @@
+//! The Radiance Grid Pyramid: how much light reaches the surfaces, at every scale.
+//!
+//! A level is a sparse grid of cells. A cell holds, for each class of surface normals in it, the mean irradiance: the
+//! flux of the photons that landed there over the exact area of those surfaces. Level 0 is the coarsest; each finer level
+//! halves the cells.
+//!
+//! ```text
+//!   Layout       surfaces -> which cells exist, their area     (clip, index)
+//!   Accumulator  photons  -> flux and count of each cell       (exact integer sums)
+//!   Pyramid      merge    -> irradiance of each cell, read by  lookup(point, class, footprint)
+//! ```
+//!
+//! The pyramid knows no photon, BSDF, light or scene: it takes deposits and answers look-ups.
+//!
+//! After Yue, Iwasaki, Nishita, "Radiance Grid Pyramid"; what differs: irradiance instead of radiance per direction for
+//! diffuse surfaces, true area instead of the cell's face, level chosen by the parent's photon count.
+
+mod accumulator;
+mod build;
+mod class;
+mod clip;
+mod grid;
+mod index;
+mod layout;
+
+use glam::{IVec3, Vec3};
+
+pub use accumulator::Accumulator;
+pub use class::NormalClasses;
+pub use grid::Grid;
+pub use layout::{Layout, SurfaceTriangle};
+
+use crate::color::Rgb;
+use index::LevelIndex;
+
+/// Irradiance of one cell and normal class.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(16))]
+struct Cell {
+    irradiance: [f32; 3],
+    /// Whether there are enough photons for the cell's children to be read.
+    enough: u32,
+}
+
+impl Cell {
+    fn new(irradiance: Rgb, enough: bool) -> Self {
+        Self { irradiance: irradiance.0, enough: u32::from(enough) }
+    }
+
+    const fn irradiance(&self) -> Rgb {
+        Rgb(self.irradiance)
+    }
+
+    const fn holds_enough(&self) -> bool {
+        self.enough != 0
+    }
+}
+
+#[derive(Debug)]
+struct Level {
+    index: LevelIndex,
+    cells: Vec<Cell>,
+}
+
+impl Level {
+    fn find(&self, cell: IVec3, class: usize) -> Option<&Cell> {
+        self.index.find(cell, class).map(|place| &self.cells[place])
+    }
+}
+
+/// The finished pyramid.
+#[derive(Debug)]
+pub struct Pyramid {
+    grid: Grid,
+    classes: NormalClasses,
+    levels: Vec<Level>,
+}
+
+impl Pyramid {
+    /// Levels of the pyramid.
+    #[must_use]
+    pub const fn level_count(&self) -> usize {
+        self.levels.len()
+    }
+
+    /// Cells that hold light, all levels.
+    #[must_use]
+    pub fn cell_count(&self) -> usize {
+        self.levels.iter().map(|level| level.cells.len()).sum()
+    }
+
+    /// Memory (bytes).
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.levels.iter().map(|level| level.index.bytes() + level.cells.len() * size_of::<Cell>()).sum()
+    }
+
+    /// Edge of a finest cell (scene units).
+    #[must_use]
+    pub fn finest_cell_size(&self) -> f32 {
+        self.grid.levels[self.grid.finest()].cell_size
+    }
+
+    /// Normal class of a surface seen from the side of `normal` (unit, geometric).
+    #[must_use]
+    pub fn class(&self, normal: Vec3) -> usize {
+        self.classes.of(normal)
+    }
+
+    /// Level whose cells match a footprint (paper, eq. 5), one finer: half the blur for no more noise. `footprint` is the
+    /// area Ω r² in square scene units.
+    #[must_use]
+    #[inline]
+    #[expect(
+        clippy::cast_possible_wrap,
+        clippy::cast_sign_loss,
+        reason = "exponents and level numbers are small"
+    )]
+    pub fn level_for(&self, footprint: f32) -> usize {
+        let l = self.finest_cell_size();
+        let ratio = (footprint / (l * l)).clamp(1.0, 1e30);
+        // Half the binary exponent, rounded, is log2 of the ratio of lengths.
+        let exponent = (ratio.to_bits() >> 23) as i32 - 127;
+        let coarser = ((exponent + 1) >> 1) - 1;
+        (self.grid.finest() as i32 - coarser.max(0)).max(0) as usize
+    }
+
+    /// Edge of the cells that a look-up at `p` of level `level` would read (scene units); 0 outside the pyramid.
+    #[must_use]
+    pub fn cell_size(&self, p: Vec3, level: usize) -> f32 {
+        let located = self.grid.locate(self.grid.offset(p), level.min(self.grid.finest()));
+        located.map_or(0.0, |(level, _)| self.grid.levels[level].cell_size)
+    }
+
+    /// Edge of the cells of a level (scene units).
+    #[must_use]
+    #[inline]
+    pub fn nominal_cell_size(&self, level: usize) -> f32 {
+        self.grid.levels[level].cell_size
+    }
+
+    /// Irradiance (W·m⁻²) at `p` on a surface of class `class`, averaged over a cell of level `level`, or of the finest
+    /// coarser level that reaches there and knows. Black where no light arrives.
+    #[must_use]
+    #[inline]
+    pub fn irradiance(&self, p: Vec3, class: usize, level: usize) -> Rgb {
+        let located = self.grid.locate(self.grid.offset(p), level);
+        let Some((mut level, mut cell)) = located else { return Rgb::BLACK };
+        if let Some(found) = self.levels[level].find(cell, class) {
+            return found.irradiance();
+        }
+        while level > 0 {
+            let Some(parent) = self.grid.parent(level, cell) else { break };
+            (level, cell) = (level - 1, parent);
+            if let Some(found) = self.levels[level].find(cell, class) {
+                return if found.holds_enough() { Rgb::BLACK } else { found.irradiance() };
+            }
+        }
+        Rgb::BLACK
+    }
+}

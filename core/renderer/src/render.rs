@@ -1,0 +1,166 @@
+//! The order of everything.
+
+use std::path::Path;
+use std::time::Instant;
+
+use glam::{DVec3, Vec3};
+
+use crate::accel::Accel;
+use crate::bsdf::{LobeSet, MaterialTable, PreparedMaterial};
+use crate::effects_plan::EffectsPlan;
+use crate::error::RenderError;
+use crate::film::Film;
+use crate::gather::{self, Gatherer};
+use crate::light::Lights;
+use crate::lit_scene::LitScene;
+use crate::photon_pass;
+use crate::progress::{Progress, Stage};
+use crate::pyramid::{Accumulator, Grid, Layout, NormalClasses, Pyramid, SurfaceTriangle};
+use crate::scene::Scene;
+use crate::settings::RenderSettings;
+use crate::stats::Stats;
+
+/// Renders `scene` into `film`, with Embree from the file `library`. `stats` grows as passes end, so that it is worth
+/// reading after a cancel too.
+///
+/// # Errors
+/// Embree missing or out of memory; [`RenderError::Cancelled`], after which the film holds what was finished.
+pub fn render(
+    scene: &Scene,
+    settings: &RenderSettings,
+    library: &Path,
+    film: &Film,
+    progress: &Progress,
+    stats: &mut Stats,
+) -> Result<(), RenderError> {
+    let began = Instant::now();
+    let threads = rayon::ThreadPoolBuilder::new()
+        .num_threads(settings.render.threads as usize)
+        .build()
+        .map_err(|e| RenderError::Internal(format!("no threads: {e}")))?;
+    let result = threads.install(|| passes(scene, settings, library, film, progress, stats));
+    stats.nonfinite_pixels = film.nonfinite();
+    stats.passes = progress.snapshot().passes_done;
+    stats.seconds.total = began.elapsed().as_secs_f64();
+    result
+}
+
+fn passes(
+    scene: &Scene,
+    settings: &RenderSettings,
+    library: &Path,
+    film: &Film,
+    progress: &Progress,
+    stats: &mut Stats,
+) -> Result<(), RenderError> {
+    progress.enter(Stage::Accel);
+    let clock = Instant::now();
+    let lit = light(scene, settings, library, progress)?;
+    stats.seconds.accel = clock.elapsed().as_secs_f64();
+    stats.effects = lit.plan.report(&stats.seconds);
+
+    progress.enter(Stage::Layout);
+    let clock = Instant::now();
+    let layout = layout(&lit, settings);
+    stats.pyramid.cell_size =
+        f64::from(layout.grid.levels[layout.grid.finest()].cell_size) / scene.space.scale;
+    stats.seconds.pyramid = clock.elapsed().as_secs_f64();
+    progress.check()?;
+
+    progress.enter(Stage::PhotonPass);
+    let clock = Instant::now();
+    let accumulator = Accumulator::new(&layout, lit.lights.total_flux().max_channel());
+    let photons =
+        photon_pass::run(&lit, &settings.photon_pass, settings.render.seed, &accumulator, progress)?;
+    stats.photons.emitted = photons.emitted;
+    stats.photons.deposited = accumulator.deposited();
+    stats.rays.photon = photons.segments;
+    stats.seconds.photon_pass = clock.elapsed().as_secs_f64();
+
+    progress.enter(Stage::Pyramid);
+    let clock = Instant::now();
+    stats.pyramid.build_bytes = layout.bytes() + accumulator.bytes();
+    let pyramid = Pyramid::build(accumulator, &layout, settings.pyramid.photons_per_cell);
+    drop(layout);
+    stats.pyramid.levels = pyramid.level_count();
+    stats.pyramid.cells = pyramid.cell_count();
+    stats.pyramid.bytes = pyramid.bytes();
+    stats.seconds.pyramid += clock.elapsed().as_secs_f64();
+
+    progress.enter(Stage::Gather);
+    let clock = Instant::now();
+    let gatherer = Gatherer::new(&lit, &pyramid, settings);
+    let gathered = gather::run(&gatherer, film, progress);
+    stats.seconds.gather = clock.elapsed().as_secs_f64();
+    stats.effects = lit.plan.report(&stats.seconds);
+    stats.rays += gathered?;
+    Ok(())
+}
+
+/// Materials, lights, tree and plan.
+fn light<'a>(
+    scene: &'a Scene,
+    settings: &RenderSettings,
+    library: &Path,
+    progress: &Progress,
+) -> Result<LitScene<'a>, RenderError> {
+    let materials: Vec<PreparedMaterial> = MaterialTable::build(&scene.materials).iter().cloned().collect();
+    let emission: Vec<_> = materials.iter().map(PreparedMaterial::emission).collect();
+    let lights = Lights::build(scene, &emission);
+    let plan = EffectsPlan::new(scene, &materials, &lights);
+    let proxies = lights.lamp_proxies();
+    let accel = Accel::build(scene, &proxies, library, settings.render.threads as usize, progress)?;
+    Ok(LitScene { accel, materials, lights, plan })
+}
+
+/// The cells, over what the camera and its gather rays see.
+fn layout(lit: &LitScene<'_>, settings: &RenderSettings) -> Layout {
+    let scene = lit.accel.scene();
+    let seen = seen_bounds(gather::seen_points(lit, settings.render.seed), scene.bounds);
+    let bounds = scene.bounds.map(Vec3::as_dvec3);
+    let world_origin = -scene.space.center * scene.space.scale;
+    let grid = Grid::new(seen, bounds, settings.pyramid.finest_resolution, world_origin);
+    let classes =
+        if settings.pyramid.normal_classes == "54" { NormalClasses::FiftyFour } else { NormalClasses::Six };
+    let reads = LobeSet::DIFFUSE | LobeSet::ROUGH;
+    let mut triangles: Vec<(u32, u32)> = Vec::new();
+    for (index, object) in scene.objects.iter().enumerate().filter(|_| lit.plan.indirect) {
+        let primitives = 0..object.mesh.triangles.len();
+        let received = primitives.filter(|&i| lit.materials[object.material(i)].classes().intersects(reads));
+        triangles.extend(received.map(|i| (index as u32, i as u32)));
+    }
+    Layout::new(grid, classes, triangles.len(), |i| {
+        let (object, primitive) = triangles[i];
+        let object = &scene.objects[object as usize];
+        let material = &lit.materials[object.material(primitive as usize)];
+        SurfaceTriangle {
+            corners: object.corners(primitive as usize),
+            glossy: material.classes().intersects(LobeSet::ROUGH),
+        }
+    })
+}
+
+/// Points beyond this share on either side do not decide how fine the cells are.
+const OUTLIERS: f64 = 0.02;
+
+/// The box is widened by this share of its width: the pilot sees points, not extents.
+const MARGIN: f64 = 0.1;
+
+/// A box around most of the points, within the scene's bounds.
+fn seen_bounds(points: Vec<Vec3>, bounds: [Vec3; 2]) -> [DVec3; 2] {
+    let bounds = bounds.map(Vec3::as_dvec3);
+    if points.is_empty() {
+        return bounds;
+    }
+    let (mut low, mut high) = (DVec3::ZERO, DVec3::ZERO);
+    for axis in 0..3 {
+        let mut values: Vec<f32> = points.iter().map(|p| p[axis]).collect();
+        values.sort_by(f32::total_cmp);
+        let skipped = (values.len() as f64 * OUTLIERS) as usize;
+        low[axis] = f64::from(values[skipped]);
+        high[axis] = f64::from(values[values.len() - 1 - skipped]);
+    }
+    let margin = (high - low).max_element() * MARGIN;
+    let (low, high) = ((low - margin).max(bounds[0]), (high + margin).min(bounds[1]));
+    [low.min(high), low.max(high)]
+}

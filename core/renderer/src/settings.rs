@@ -1,0 +1,351 @@
+//! Every knob: one table says name, range, default, unit and meaning; the host shows the same table.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::RenderError;
+
+/// Knobs of the photon pass.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PhotonPassSettings {
+    /// Photons emitted.
+    pub photon_count: u64,
+    /// Surfaces a photon may visit.
+    pub max_depth: u32,
+}
+
+/// Knobs of the pyramid.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PyramidSettings {
+    /// Cells along the longest side of the seen part.
+    pub finest_resolution: u32,
+    /// Direction bins of glossy cells, elevation × azimuth.
+    pub bins: String,
+    /// Normal classes: "6" or "24".
+    pub normal_classes: String,
+    /// A cell whose parent holds fewer than four times as many photons is read from the parent.
+    pub photons_per_cell: u32,
+}
+
+/// How gather rays are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GatherSampling {
+    /// Importance sampling of the BSDF times the cosine.
+    Cosine,
+    /// Uniform over the hemisphere, as in the paper's eq. 2.
+    Uniform,
+}
+
+/// Knobs of the final gather.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GatherSettings {
+    /// Gather rays per pixel.
+    pub rays: u32,
+    /// Camera samples per pixel; they share the gather rays.
+    pub camera_samples: u32,
+    /// Shadow rays per camera sample.
+    pub light_samples: u32,
+    /// How gather rays are drawn.
+    pub sampling: GatherSampling,
+    /// Gather rays shorter than this many cells are continued one bounce.
+    pub retrace_distance: f32,
+    /// Mirror, glass and retrace bounces.
+    pub max_depth: u32,
+}
+
+/// Pixel filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PixelFilter {
+    /// Four-term Blackman-Harris.
+    BlackmanHarris,
+    /// Constant over the width.
+    Box,
+}
+
+/// Knobs of the film.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FilmSettings {
+    /// Pixel filter.
+    pub filter: PixelFilter,
+    /// Its full width (pixels).
+    pub filter_width: f32,
+    /// Edge of a tile (pixels), rounded up to a multiple of 4.
+    pub tile_size: u32,
+}
+
+/// Knobs of the machine.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MachineSettings {
+    /// Threads; 0 takes all.
+    pub threads: u32,
+    /// Another seed gives another, equally good picture.
+    pub seed: u32,
+}
+
+/// All knobs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RenderSettings {
+    /// Photon pass.
+    pub photon_pass: PhotonPassSettings,
+    /// Pyramid.
+    pub pyramid: PyramidSettings,
+    /// Final gather.
+    pub gather: GatherSettings,
+    /// Film.
+    pub film: FilmSettings,
+    /// Machine.
+    pub render: MachineSettings,
+}
+
+impl Default for PhotonPassSettings {
+    fn default() -> Self {
+        Self { photon_count: 1_000_000, max_depth: 64 }
+    }
+}
+
+impl Default for PyramidSettings {
+    fn default() -> Self {
+        Self { finest_resolution: 128, bins: "8x16".into(), normal_classes: "6".into(), photons_per_cell: 16 }
+    }
+}
+
+impl Default for GatherSettings {
+    fn default() -> Self {
+        Self {
+            rays: 256,
+            camera_samples: 16,
+            light_samples: 4,
+            sampling: GatherSampling::Cosine,
+            retrace_distance: 1.732_050_8,
+            max_depth: 32,
+        }
+    }
+}
+
+impl Default for FilmSettings {
+    fn default() -> Self {
+        Self { filter: PixelFilter::BlackmanHarris, filter_width: 1.5, tile_size: 64 }
+    }
+}
+
+/// Type and range of one knob.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum Kind {
+    /// A whole number.
+    Int {
+        /// Smallest allowed.
+        minimum: u64,
+        /// Largest allowed.
+        maximum: u64,
+    },
+    /// A real number.
+    Float {
+        /// Smallest allowed.
+        minimum: f64,
+        /// Largest allowed.
+        maximum: f64,
+    },
+    /// One of several words.
+    Enum {
+        /// The words.
+        choices: &'static [&'static str],
+    },
+    /// Elevation × azimuth, written `8x16`, from `1x1` to `32x64`.
+    Bins,
+}
+
+/// One row of the table of knobs.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Knob {
+    /// Group, as in `GROUP.NAME=VALUE`.
+    pub group: &'static str,
+    /// Name.
+    pub name: &'static str,
+    /// Type and range.
+    #[serde(flatten)]
+    pub kind: Kind,
+    /// Unit, empty for a pure number or word.
+    pub unit: &'static str,
+    /// One sentence for a tooltip, without full stop.
+    pub description: &'static str,
+}
+
+const fn knob(
+    group: &'static str,
+    name: &'static str,
+    kind: Kind,
+    unit: &'static str,
+    description: &'static str,
+) -> Knob {
+    Knob { group, name, kind, unit, description }
+}
+
+const fn int(minimum: u64, maximum: u64) -> Kind {
+    Kind::Int { minimum, maximum }
+}
+
+/// Every knob there is. Defaults are those of [`RenderSettings::default`].
+#[rustfmt::skip]
+pub const KNOBS: &[Knob] = &[
+    knob("photon_pass", "photon_count", int(0, 1_000_000_000), "photons", "Photons emitted by all lights together; more make smoother indirect light"),
+    knob("photon_pass", "max_depth", int(1, 1000), "surfaces", "Surfaces a photon may visit before it is dropped; low values darken the picture"),
+    knob("pyramid", "finest_resolution", int(1, 1024), "cells", "Cells of the finest level along the longest side of what the camera and its gather rays see"),
+    knob("pyramid", "bins", Kind::Bins, "", "Direction bins of glossy cells, elevation x azimuth; diffuse cells have none"),
+    knob("pyramid", "normal_classes", Kind::Enum { choices: &["6", "24"] }, "", "Directions that keep surfaces in one cell apart: the six faces of a cube, or four parts of each"),
+    knob("pyramid", "photons_per_cell", int(1, 1000), "photons", "A cell is read from its parent where the parent holds fewer than four times as many photons"),
+    knob("gather", "rays", int(1, 4096), "rays", "Gather rays per pixel, shared among its camera samples; more make less noise"),
+    knob("gather", "camera_samples", int(1, 1024), "samples", "Camera samples per pixel, for smooth edges and shadows"),
+    knob("gather", "light_samples", int(1, 64), "rays", "Shadow rays per camera sample"),
+    knob("gather", "sampling", Kind::Enum { choices: &["cosine", "uniform"] }, "", "Gather rays follow the surface's reflection (cosine), or are uniform over the hemisphere as in the paper"),
+    knob("gather", "retrace_distance", Kind::Float { minimum: 0.0, maximum: 8.0 }, "cells", "Gather rays shorter than this many cells are continued one bounce, which keeps corners right; 0 never"),
+    knob("gather", "max_depth", int(1, 1000), "bounces", "Mirror, glass and short-ray bounces after which a path ends"),
+    knob("film", "filter", Kind::Enum { choices: &["blackman_harris", "box"] }, "", "Pixel filter"),
+    knob("film", "filter_width", Kind::Float { minimum: 0.1, maximum: 10.0 }, "pixels", "Full width of the pixel filter"),
+    knob("film", "tile_size", int(4, 4096), "pixels", "Edge of the tiles the picture is cut into; changes nothing in the picture"),
+    knob("render", "threads", int(0, 1024), "threads", "Threads to use; 0 takes all; changes nothing in the picture"),
+    knob("render", "seed", int(0, 2_147_483_647), "", "Another seed gives other noise"),
+];
+
+/// Elevation and azimuth counts of `8x16`.
+///
+/// # Errors
+/// The text is not of that form or a count is outside 1x1 to 32x64.
+pub fn parse_bins(text: &str) -> Result<[u32; 2], RenderError> {
+    let counts = text.split_once('x').and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
+    match counts {
+        Some([e @ 1..=32, a @ 1..=64]) => Ok([e, a]),
+        _ => Err(RenderError::Settings(format!(
+            "pyramid.bins is '{text}'; it is written elevation x azimuth, such as 8x16, from 1x1 to 32x64"
+        ))),
+    }
+}
+
+impl RenderSettings {
+    /// Settings from nested groups.
+    ///
+    /// # Errors
+    /// An unknown group or name, a wrong type or a value out of range; the message lists what exists.
+    pub fn from_json(value: &serde_json::Value) -> Result<Self, RenderError> {
+        let groups = value
+            .as_object()
+            .ok_or_else(|| RenderError::Settings("settings are groups of names and values".into()))?;
+        for (group, names) in groups {
+            let names = names.as_object().filter(|_| KNOBS.iter().any(|k| k.group == group));
+            let names = names.ok_or_else(|| unknown(group))?;
+            for (name, value) in names {
+                let found = KNOBS.iter().find(|k| k.group == group && k.name == name);
+                found.ok_or_else(|| unknown(&format!("{group}.{name}")))?.check(value)?;
+            }
+        }
+        serde_json::from_value(value.clone()).map_err(|e| RenderError::Settings(e.to_string()))
+    }
+
+    /// The table of knobs with their defaults.
+    #[must_use]
+    pub fn schema() -> serde_json::Value {
+        let defaults = serde_json::to_value(Self::default()).unwrap_or_default();
+        let rows = KNOBS.iter().map(|knob| {
+            let mut row = serde_json::to_value(knob).unwrap_or_default();
+            row["default"] = defaults[knob.group][knob.name].clone();
+            for optional in ["minimum", "maximum", "choices"] {
+                if row.get(optional).is_none() {
+                    row[optional] = serde_json::Value::Null;
+                }
+            }
+            row
+        });
+        rows.collect()
+    }
+}
+
+impl Knob {
+    fn check(&self, value: &serde_json::Value) -> Result<(), RenderError> {
+        let good = match self.kind {
+            Kind::Int { minimum, maximum } => {
+                value.as_u64().is_some_and(|v| (minimum..=maximum).contains(&v))
+            }
+            Kind::Float { minimum, maximum } => {
+                value.as_f64().is_some_and(|v| (minimum..=maximum).contains(&v))
+            }
+            Kind::Enum { choices } => value.as_str().is_some_and(|v| choices.contains(&v)),
+            Kind::Bins => value.as_str().is_some_and(|v| parse_bins(v).is_ok()),
+        };
+        if good {
+            return Ok(());
+        }
+        let allowed = match self.kind {
+            Kind::Int { minimum, maximum } => format!("a whole number from {minimum} to {maximum}"),
+            Kind::Float { minimum, maximum } => format!("a number from {minimum} to {maximum}"),
+            Kind::Enum { choices } => format!("one of {}", choices.join(", ")),
+            Kind::Bins => "elevation x azimuth from 1x1 to 32x64, such as 8x16".into(),
+        };
+        Err(RenderError::Settings(format!("{}.{} is {value}; allowed is {allowed}", self.group, self.name)))
+    }
+}
+
+fn unknown(what: &str) -> RenderError {
+    let names: Vec<_> = KNOBS.iter().map(|k| format!("{}.{}", k.group, k.name)).collect();
+    RenderError::Settings(format!("there is no setting {what}; there are {}", names.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn the_table_names_exactly_the_fields() {
+        let defaults = serde_json::to_value(RenderSettings::default()).unwrap();
+        let mut fields: Vec<String> = Vec::new();
+        for (group, names) in defaults.as_object().unwrap() {
+            fields.extend(names.as_object().unwrap().keys().map(|name| format!("{group}.{name}")));
+        }
+        let mut knobs: Vec<_> = KNOBS.iter().map(|k| format!("{}.{}", k.group, k.name)).collect();
+        fields.sort();
+        knobs.sort();
+        assert_eq!(fields, knobs);
+        for knob in KNOBS {
+            knob.check(&defaults[knob.group][knob.name]).expect("a default is within its range");
+        }
+    }
+
+    #[test]
+    fn what_is_not_allowed_is_refused_with_what_exists() {
+        for bad in [
+            json!({"gather": {"rayz": 1}}),
+            json!({"gathering": {"rays": 1}}),
+            json!({"gather": {"rays": 0}}),
+            json!({"gather": {"rays": 4097}}),
+            json!({"gather": {"rays": "many"}}),
+            json!({"gather": {"retrace_distance": -0.1}}),
+            json!({"gather": {"sampling": "random"}}),
+            json!({"pyramid": {"bins": "8"}}),
+            json!({"pyramid": {"bins": "33x16"}}),
+            json!({"pyramid": 3}),
+            json!(3),
+        ] {
+            assert!(RenderSettings::from_json(&bad).is_err(), "{bad} was accepted");
+        }
+        let message = RenderSettings::from_json(&json!({"gather": {"rayz": 1}})).unwrap_err().to_string();
+        assert!(message.contains("gather.rayz") && message.contains("gather.rays"), "{message}");
+    }
+
+    #[test]
+    fn values_arrive() {
+        let settings = RenderSettings::from_json(
+            &json!({"gather": {"rays": 7, "sampling": "uniform"}, "pyramid": {"bins": "2x4"}}),
+        )
+        .unwrap();
+        assert_eq!(settings.gather.rays, 7);
+        assert_eq!(settings.gather.sampling, GatherSampling::Uniform);
+        assert_eq!(parse_bins(&settings.pyramid.bins).unwrap(), [2, 4]);
+    }
+}

@@ -1,0 +1,107 @@
+//! What a render counted and timed; serialised as the stats file.
+
+use std::ops::AddAssign;
+
+use serde::Serialize;
+
+/// Wall seconds of each pass.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Seconds {
+    /// Ray tracer's tree.
+    pub accel: f64,
+    /// Photons.
+    pub photon_pass: f64,
+    /// Pilot, surface areas and merging.
+    pub pyramid: f64,
+    /// Final gathering.
+    pub gather: f64,
+    /// All of the above.
+    pub total: f64,
+}
+
+/// Rays traced, by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct RayCounts {
+    /// From the camera, through mirrors and glass included.
+    pub camera: u64,
+    /// Gather rays, and the bounces that continue short ones.
+    pub gather: u64,
+    /// Next-event estimation.
+    pub shadow: u64,
+    /// Photon segments.
+    pub photon: u64,
+    /// Gather rays too short for the cell they would read.
+    pub retraced: u64,
+}
+
+impl AddAssign for RayCounts {
+    fn add_assign(&mut self, o: Self) {
+        self.camera += o.camera;
+        self.gather += o.gather;
+        self.shadow += o.shadow;
+        self.photon += o.photon;
+        self.retraced += o.retraced;
+    }
+}
+
+/// Photons of the photon pass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct PhotonCounts {
+    /// Started at a light.
+    pub emitted: u64,
+    /// Landings added to the pyramid.
+    pub deposited: u64,
+}
+
+/// Size of the pyramid.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct PyramidCounts {
+    /// Levels, the finest included.
+    pub levels: usize,
+    /// Cells that hold light, all levels.
+    pub cells: usize,
+    /// Cells with direction bins.
+    pub glossy_cells: usize,
+    /// Direction bins per glossy cell.
+    pub bins: usize,
+    /// Edge of a finest cell (m).
+    pub cell_size: f64,
+    /// Memory of the finished pyramid.
+    pub bytes: usize,
+    /// Most memory it took while it was built.
+    pub build_bytes: usize,
+}
+
+/// One line of the effects plan.
+#[derive(Clone, Debug, Serialize)]
+pub struct EffectStats {
+    /// Name of the effect.
+    pub name: &'static str,
+    /// Whether the scene asks for it.
+    pub called_for: bool,
+    /// What asks for it, or why nothing does.
+    pub because: String,
+    /// The pass that computes it.
+    pub pass: &'static str,
+    /// Seconds of that pass; the pass may compute other effects too.
+    pub seconds: f64,
+}
+
+/// Everything a render reports.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Stats {
+    /// Time.
+    pub seconds: Seconds,
+    /// Rays.
+    pub rays: RayCounts,
+    /// Photons.
+    pub photons: PhotonCounts,
+    /// Pyramid.
+    pub pyramid: PyramidCounts,
+    /// Effects plan.
+    pub effects: Vec<EffectStats>,
+    /// Pixels that came out NaN or infinite and were set to black.
+    pub nonfinite_pixels: u64,
+    /// Passes over the picture that are complete.
+    pub passes: u32,
+}
