@@ -13,18 +13,19 @@ from tools.rust_paths import crate_modules
 RUST_RANKS = {
     **dict.fromkeys(("math", "color", "sampling", "settings", "progress", "stats", "error"), 0),
     **dict.fromkeys(("scene", "pyramid", "film"), 1),
-    **dict.fromkeys(("accel", "bsdf", "light"), 2),
-    "effects_plan": 3,
-    **dict.fromkeys(("photon_pass", "gather", "baseline"), 4),
-    "render": 5,
+    **dict.fromkeys(("bsdf", "light"), 2),
+    **dict.fromkeys(("accel", "effects_plan"), 3),
+    "lit_scene": 4,
+    **dict.fromkeys(("photon_pass", "gather", "baseline"), 5),
+    "render": 6,
 }
 # The lowest rank is the one exception: plain tools that may use each other.
 FREE_RANK = 0
 
 PYTHON_RANKS = {
     "report": 0,
-    **dict.fromkeys(("native", "properties", "preferences"), 1),
-    **dict.fromkeys(("settings", "stats", "ui"), 2),
+    **dict.fromkeys(("native", "stats", "properties", "preferences"), 1),
+    **dict.fromkeys(("settings", "ui"), 2),
     "export": 3,
     "session": 4,
     "engine": 5,
