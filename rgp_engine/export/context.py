@@ -1,7 +1,6 @@
 """What every part of the export works with."""
 
 import time
-from collections.abc import Hashable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -25,10 +24,10 @@ class ExportContext:
     b_depsgraph: Any
     builder: "rgp_core.SceneBuilder"
     log: ProblemLog
-    meshes: dict[Hashable, int | None] = field(default_factory=dict)
-    """Index of each evaluated geometry in the builder; None for those without triangles."""
-    materials: dict[Hashable, int] = field(default_factory=dict)
-    """Index of each evaluated material in the builder."""
+    meshes: dict[int, int | None] = field(default_factory=dict)
+    """Index in the builder of each evaluated mesh, by its address; None for those without triangles."""
+    materials: dict[int | None, int] = field(default_factory=dict)
+    """Index in the builder of each evaluated material, by its address; None is no material."""
     emits: bool = False
     """True once anything in the scene can give light."""
     _next_tick: float = 0.0

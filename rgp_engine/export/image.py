@@ -3,11 +3,14 @@
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from .arithmetic import Color
 
 # Larger images are not worth reading for one color; 8192 x 8192.
 _MAX_PIXELS = 1 << 26
+# Rows and columns that are looked at, evenly spread.
+_MAX_SAMPLES = 512
 _ENCODED = ("sRGB", "Filmic sRGB")
 
 
@@ -22,17 +25,22 @@ def average(b_image: Any, is_sphere: bool = False) -> tuple[Color, float] | None
         return None
     pixels = np.empty(width * height * channels, np.float32)
     b_image.pixels.foreach_get(pixels)
-    rows = pixels.reshape(height, width, channels)
+    step_y, step_x = -(-height // _MAX_SAMPLES), -(-width // _MAX_SAMPLES)
+    samples = pixels.reshape(height, width, channels)[step_y // 2 :: step_y, step_x // 2 :: step_x]
     if not b_image.is_float and b_image.colorspace_settings.name in _ENCODED:
-        rows[..., :3] = _linear(rows[..., :3])
-    weights = np.sin((np.arange(height) + 0.5) * (np.pi / height)) if is_sphere else None
-    mean = np.average(rows.mean(axis=1, dtype=np.float64), axis=0, weights=weights)
+        samples[..., :3] = _linear(samples[..., :3])
+    rows = samples.mean(axis=1, dtype=np.float64)
+    weights = np.sin((np.arange(len(rows)) + 0.5) * (np.pi / len(rows))) if is_sphere else None
+    mean = np.average(rows, axis=0, weights=weights)
     if channels < 3:
         mean = np.repeat(mean[:1], 3)
     alpha = float(mean[3]) if channels > 3 else 1.0
     return (float(mean[0]), float(mean[1]), float(mean[2])), alpha
 
 
-def _linear(encoded: "np.ndarray[Any, np.dtype[np.float32]]") -> Any:
-    """sRGB transfer function undone (IEC 61966-2-1)."""
-    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+def _linear(encoded: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+    """Undoes the sRGB transfer function (IEC 61966-2-1)."""
+    linear: npt.NDArray[np.float32] = np.where(
+        encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4
+    )
+    return linear

@@ -10,8 +10,9 @@ from .material import material_index
 from .mesh import mesh_arrays
 from .visibility import instance_bits, owner
 
-_CONVERTED = ("CURVE", "SURFACE", "FONT", "META")
-_LIGHTLESS = ("EMPTY", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE")
+# Without triangles of their own. What curves, texts, surfaces and metaballs look like comes as an instance of a mesh.
+_WITHOUT_TRIANGLES = ("CURVE", "SURFACE", "FONT", "META")
+_INVISIBLE = ("EMPTY", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE")
 
 
 def export_instances(context: ExportContext) -> None:
@@ -24,22 +25,23 @@ def export_instances(context: ExportContext) -> None:
         kind = b_object.type
         if kind == "LIGHT":
             export_light(context, b_instance)
-        elif kind == "MESH" or kind in _CONVERTED:
-            _export_geometry(context, b_instance)
-        elif kind not in _LIGHTLESS:
+        elif kind == "MESH":
+            _export_mesh(context, b_instance)
+        elif kind not in _INVISIBLE + _WITHOUT_TRIANGLES:
             name = b_object.bl_rna.properties["type"].enum_items[kind].name
             context.log.add(b_object.name, f"objects of type {name} are not supported yet; left out")
 
 
-def _export_geometry(context: ExportContext, b_instance: Any) -> None:
-    """One object made of triangles."""
+def _export_mesh(context: ExportContext, b_instance: Any) -> None:
+    """One placed mesh."""
     visibility = instance_bits(context, b_instance)
     if visibility == 0:
         return
     b_object = b_instance.object
-    key = _geometry_key(b_object)
+    # Never keyed by name: instances that geometry nodes make all bear the name of their object.
+    key = b_object.data.as_pointer()
     if key not in context.meshes:
-        context.meshes[key] = _add_mesh(context, b_object)
+        context.meshes[key] = _add_mesh(context, b_object.data)
     _report_unsupported(context, b_instance)
     mesh = context.meshes[key]
     if mesh is None:
@@ -53,32 +55,13 @@ def _export_geometry(context: ExportContext, b_instance: Any) -> None:
     )
 
 
-def _geometry_key(b_object: Any) -> tuple[str, int]:
-    """Same key, same triangles. Never a name: instances of geometry nodes all bear their object's.
-
-    Objects that share a curve or text may differ in their modifiers, so theirs is the object.
-    """
-    if b_object.type == "MESH":
-        return "mesh", b_object.data.as_pointer()
-    return "object", b_object.original.session_uid
-
-
-def _add_mesh(context: ExportContext, b_object: Any) -> int | None:
-    """Hands an object's triangles to the core; None when it has none."""
-    if b_object.type == "MESH":
-        arrays = mesh_arrays(b_object.data)
-    else:
-        try:
-            b_mesh = b_object.to_mesh()
-        except RuntimeError as error:
-            context.log.add(b_object.name, f"cannot be turned into a mesh; left out ({error})")
-            return None
-        arrays = mesh_arrays(b_mesh) if b_mesh else None
-        b_object.to_mesh_clear()
+def _add_mesh(context: ExportContext, b_mesh: Any) -> int | None:
+    """Hands an evaluated mesh to the core; None when it has no triangles."""
+    arrays = mesh_arrays(b_mesh)
     if arrays is None:
         return None
     index: int = context.builder.add_mesh(
-        b_object.data.name,
+        b_mesh.name,
         arrays.positions,
         arrays.triangles,
         arrays.corner_normals,
@@ -91,10 +74,18 @@ def _add_mesh(context: ExportContext, b_object: Any) -> int | None:
 def _materials(context: ExportContext, b_object: Any) -> list[int]:
     """Index of the material in each slot; the view layer's override replaces all."""
     b_override = context.b_depsgraph.view_layer_eval.material_override
-    if b_override is not None:
-        return [material_index(context, b_override)]
-    b_slots = [b_slot.material for b_slot in b_object.material_slots]
-    return [material_index(context, b_material) for b_material in b_slots or [None]]
+    b_materials = [b_override] if b_override is not None else _slot_materials(b_object)
+    return [material_index(context, b_material) for b_material in b_materials or [None]]
+
+
+def _slot_materials(b_object: Any) -> list[Any]:
+    """The evaluated mesh's materials, which geometry nodes may have set, where the object does not have its own."""
+    b_materials = list(b_object.data.materials)
+    for index, b_slot in enumerate(b_object.material_slots):
+        if b_slot.link == "OBJECT":
+            b_materials += [None] * (index + 1 - len(b_materials))
+            b_materials[index] = b_slot.material
+    return b_materials
 
 
 def _report_unsupported(context: ExportContext, b_instance: Any) -> None:

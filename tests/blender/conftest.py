@@ -1,0 +1,74 @@
+"""What the Blender tests share: an empty scene, the export recorded, renders."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import bpy
+import pytest
+
+import rgp_engine
+from rgp_engine import native
+from rgp_engine.report import Outcome, last_outcome
+from tests.blender.recording_core import Core, SceneBuilder
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _engine() -> None:
+    if not hasattr(bpy.types.Scene, "rgp"):
+        rgp_engine.register()
+
+
+@pytest.fixture
+def scene() -> Iterator[Any]:
+    """An empty scene of 32 x 24 pixels, rendered by RGP Engine at the lowest quality."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    b_scene = bpy.context.scene
+    b_scene.render.engine = "RGP"
+    b_scene.render.resolution_x, b_scene.render.resolution_y = 32, 24
+    b_scene.rgp.photon_pass.photon_count = 1000
+    b_scene.rgp.pyramid.finest_resolution = 16
+    b_scene.rgp.gather.rays = 4
+    b_scene.rgp.gather.camera_samples = 1
+    b_scene.rgp.gather.light_samples = 1
+    yield b_scene
+
+
+@pytest.fixture
+def outcome() -> Callable[[], Outcome]:
+    """How the last render ended."""
+
+    def get() -> Outcome:
+        found = last_outcome()
+        assert found is not None, "nothing was rendered"
+        return found
+
+    return get
+
+
+@pytest.fixture
+def recorded(monkeypatch: pytest.MonkeyPatch) -> type[Core]:
+    """The native core replaced by one that records."""
+    monkeypatch.setattr(native, "core", lambda: Core)
+    monkeypatch.setattr(Core, "seconds", 0.05)
+    return Core
+
+
+@pytest.fixture
+def export(scene: Any, recorded: type[Core]) -> Callable[[], SceneBuilder]:
+    """Exports the scene by rendering it, and returns what the core was handed."""
+
+    def run() -> SceneBuilder:
+        bpy.ops.render.render()
+        return recorded.last
+
+    return run
+
+
+@pytest.fixture
+def problems(outcome: Callable[[], Outcome]) -> Callable[[], list[str]]:
+    """Problems of the last render as text."""
+
+    def get() -> list[str]:
+        return [f"{problem.subject}: {problem.message}" for problem in outcome().problems]
+
+    return get

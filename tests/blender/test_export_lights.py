@@ -1,0 +1,212 @@
+"""Lamps and the world as records."""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+
+from tests.blender import build
+
+has_exposure = pytest.mark.skipif(
+    "exposure" not in bpy.types.Light.bl_rna.properties, reason="Blender 4.5 and later"
+)
+
+
+@pytest.fixture
+def lamp(export):
+    """The one lamp of the exported scene."""
+
+    def get():
+        build.add_camera()
+        (record,) = export().lamps
+        return record
+
+    return get
+
+
+def test_point(scene, lamp):
+    build.add_light(
+        "POINT", energy=60.0, color=(1.0, 0.5, 0.25), shadow_soft_size=0.3, use_soft_falloff=False
+    )
+    record = lamp()
+    assert record["power"] == pytest.approx([60.0, 30.0, 15.0])
+    assert record["shape"] == {"kind": "point", "radius": pytest.approx(0.3), "soft_falloff": False}
+    assert np.array(record["world_from_lamp"])[:3, 3] == pytest.approx([0, 0, 3])
+    assert record["casts_shadow"] is True
+    assert record["visibility"] == 30, "hidden from the camera, as Blender makes new lights"
+
+
+def test_spot(scene, lamp):
+    build.add_light("SPOT", energy=8.0, spot_size=math.radians(50), spot_blend=0.4, shadow_soft_size=0.0)
+    shape = lamp()["shape"]
+    assert shape["kind"] == "spot"
+    assert (shape["cone_angle"], shape["blend"]) == pytest.approx((math.radians(50), 0.4))
+    assert shape["radius"] == 0.0
+
+
+def test_sun(scene, lamp):
+    build.add_light("SUN", energy=3.5, angle=0.05, use_shadow=False)
+    record = lamp()
+    assert record["power"] == pytest.approx([3.5] * 3)
+    assert record["shape"] == {"kind": "sun", "angle": pytest.approx(0.05)}
+    assert record["casts_shadow"] is False
+
+
+@pytest.mark.parametrize(
+    ("shape", "kind", "size"),
+    [
+        ("SQUARE", "rectangle", [2, 2]),
+        ("RECTANGLE", "rectangle", [2, 3]),
+        ("DISK", "ellipse", [2, 2]),
+        ("ELLIPSE", "ellipse", [2, 3]),
+    ],
+)
+def test_area(scene, lamp, shape, kind, size):
+    b_object = build.add_light("AREA", energy=5.0, shape=shape, size=2.0, size_y=3.0, spread=1.5)
+    b_object.scale = (2.0, 4.0, 1.0)
+    record = lamp()
+    assert record["shape"] == {"kind": kind, "size": size, "spread": pytest.approx(1.5)}
+    assert record["power"] == pytest.approx([5.0] * 3)
+    assert np.linalg.norm(np.array(record["world_from_lamp"])[:3, :2], axis=0) == pytest.approx([2.0, 4.0])
+
+
+@has_exposure
+def test_exposure_and_temperature(scene, lamp):
+    b_light = build.add_light("POINT", energy=10.0, color=(1.0, 0.5, 1.0), exposure=1.5).data
+    b_light.use_temperature, b_light.temperature = True, 3000.0
+    expected = np.array(b_light.temperature_color) * (1.0, 0.5, 1.0) * 10.0 * 2**1.5
+    assert lamp()["power"] == pytest.approx(expected, rel=1e-5)
+
+
+@has_exposure
+def test_power_that_is_not_normalized_grows_with_the_area(scene, lamp):
+    b_object = build.add_light("AREA", energy=5.0, shape="RECTANGLE", size=2.0, size_y=3.0, normalize=False)
+    b_object.scale = (2.0, 1.0, 1.0)
+    assert lamp()["power"] == pytest.approx([5.0 * 12.0] * 3, rel=1e-5)
+
+
+def test_emission_nodes_multiply_the_power(scene, lamp):
+    b_light = build.add_light("POINT", energy=10.0).data
+    b_tree = build.shader_tree(b_light)
+    b_emission = build.node(b_tree, "ShaderNodeEmission", Color=(1.0, 0.5, 0.0), Strength=3.0)
+    build.connect(b_tree, b_emission, b_tree.nodes.new("ShaderNodeOutputLight"), "Surface")
+    assert lamp()["power"] == pytest.approx([30.0, 15.0, 0.0])
+
+
+def test_quadratic_falloff_is_the_usual_one(scene, lamp):
+    b_light = build.add_light("POINT", energy=1.0).data
+    b_tree = build.shader_tree(b_light)
+    b_emission = build.node(b_tree, "ShaderNodeEmission", Color=(1.0, 1.0, 1.0))
+    b_falloff = build.node(b_tree, "ShaderNodeLightFalloff", Strength=40.0)
+    build.connect(b_tree, b_falloff, b_emission, "Strength", output="Quadratic")
+    build.connect(b_tree, b_emission, b_tree.nodes.new("ShaderNodeOutputLight"), "Surface")
+    assert lamp()["power"] == pytest.approx([40.0] * 3)
+
+
+def test_other_light_nodes_are_reported(scene, lamp, problems):
+    b_light = build.add_light("POINT", energy=10.0).data
+    b_tree = build.shader_tree(b_light)
+    b_mix = b_tree.nodes.new("ShaderNodeMixShader")
+    build.connect(b_tree, b_mix, b_tree.nodes.new("ShaderNodeOutputLight"), "Surface")
+    assert lamp()["power"] == pytest.approx([10.0] * 3)
+    assert "Lamp: its nodes are not a single Emission; the light's own power and color are used" in problems()
+
+
+def test_lamps_without_light_are_left_out(scene, export):
+    build.add_camera()
+    build.add_light("POINT", "Off", energy=0.0)
+    build.add_light("POINT", "Black", color=(0.0, 0.0, 0.0))
+    assert export().lamps == []
+
+
+def test_lamps_are_instanced(scene, export):
+    build.add_camera()
+    b_collection = bpy.data.collections.new("Lanterns")
+    b_collection.objects.link(bpy.data.objects.new("Lantern", bpy.data.lights.new("Lantern", "POINT")))
+    for x in (1, 2):
+        b_empty = build.add_object(f"Empty{x}", None, (x, 0, 0))
+        b_empty.instance_type, b_empty.instance_collection = "COLLECTION", b_collection
+    assert sorted(record["world_from_lamp"][0][3] for record in export().lamps) == [1, 2]
+
+
+def test_portals_give_no_light(scene, export, problems):
+    build.add_camera()
+    b_light = build.add_light("AREA", "Portal").data
+    if not hasattr(b_light, "cycles"):
+        pytest.skip("the Cycles add-on is disabled")
+    b_light.cycles.is_portal = True
+    assert export().lamps == []
+    assert "Portal: light portals are not needed; left out" in problems()
+
+
+def world_of(scene):
+    b_world = bpy.data.worlds.new("World")
+    scene.world = b_world
+    b_tree = build.shader_tree(b_world)
+    return b_tree, b_tree.nodes.new("ShaderNodeOutputWorld")
+
+
+def test_world_color_times_strength(scene, export):
+    build.add_camera()
+    b_tree, b_output = world_of(scene)
+    b_background = build.node(b_tree, "ShaderNodeBackground", Color=(0.5, 0.25, 1.0), Strength=3.0)
+    build.connect(b_tree, b_background, b_output, "Surface")
+    scene.render.film_transparent = True
+    world = export().world
+    assert world["radiance"] == pytest.approx([1.5, 0.75, 3.0])
+    assert world["film_transparent"] is True
+    assert world["visibility"] == 31
+
+
+def test_mixed_backgrounds(scene, export):
+    build.add_camera()
+    b_tree, b_output = world_of(scene)
+    b_mix = build.node(b_tree, "ShaderNodeMixShader", Fac=0.25)
+    for identifier, strength in (("Shader", 1.0), ("Shader_001", 5.0)):
+        b_background = build.node(b_tree, "ShaderNodeBackground", Color=(1.0, 1.0, 1.0), Strength=strength)
+        build.connect(b_tree, b_background, b_mix, identifier)
+    build.connect(b_tree, b_mix, b_output, "Surface")
+    assert export().world["radiance"] == pytest.approx([2.0] * 3)
+
+
+def test_environment_picture_is_replaced_by_its_mean_over_the_sphere(scene, export, problems):
+    build.add_camera()
+    b_image = bpy.data.images.new("Sky", 8, 4, float_buffer=True)
+    rows = np.zeros((4, 8, 4), np.float32)
+    rows[2:] = 2.0
+    b_image.pixels.foreach_set(rows.ravel())
+    b_tree, b_output = world_of(scene)
+    b_texture = b_tree.nodes.new("ShaderNodeTexEnvironment")
+    b_texture.image = b_image
+    b_background = build.node(b_tree, "ShaderNodeBackground", Strength=1.0)
+    build.connect(b_tree, b_texture, b_background, "Color")
+    build.connect(b_tree, b_background, b_output, "Surface")
+    assert export().world["radiance"] == pytest.approx([1.0] * 3, rel=1e-5)
+    assert any("image textures are not supported yet" in text for text in problems())
+
+
+def test_no_world_is_black(scene, export):
+    build.add_camera()
+    scene.world = None
+    assert export().world["radiance"] == [0.0, 0.0, 0.0]
+
+
+def test_hidden_world(scene, export):
+    build.add_camera()
+    world_of(scene)
+    if not hasattr(scene.world, "cycles_visibility"):
+        pytest.skip("the Cycles add-on is disabled")
+    scene.world.cycles_visibility.camera = False
+    scene.world.cycles_visibility.glossy = False
+    assert export().world["visibility"] == 31 - 1 - 4
+
+
+def test_darkness_is_reported_once_nothing_gives_light(scene, export, problems):
+    build.add_camera()
+    build.add_object("Quad", build.quad())
+    export()
+    assert any("there is no light" in text for text in problems())
+    build.add_light("POINT")
+    export()
+    assert not any("there is no light" in text for text in problems())
