@@ -39,8 +39,9 @@ impl Glass {
         } else {
             let table = energy_table::dielectric(roughness, cos, eta);
             let plain = fresnel::f0_from_ior(eta);
-            let single = plain * (total - table.rise) + table.rise + (1.0 - plain) * table.through;
-            (table.rise, table.through, compensation(single, table.mean, self.transmission_tint))
+            let refracted = (1.0 - plain) * (table.through + table.stray);
+            let scaled = plain * (total - table.rise) + table.rise + refracted;
+            (table.rise, table.through, compensation(scaled, table.mean, self.transmission_tint))
         };
         let fresnel = Fresnel::Dielectric { f0: self.f0, eta };
         let reflected = weight * gain * self.reflection_tint;

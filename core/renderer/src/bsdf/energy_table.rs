@@ -50,7 +50,11 @@ pub(super) struct Dielectric {
     pub(super) refracted: f32,
     /// Mean of s over visible normals that reflect upwards: Cycles' estimate by which a layer dims what lies below.
     pub(super) layer: f32,
-    /// Albedo of reflection and refraction together, averaged over directions.
+    /// What would be added to `through` if refracted light that ends above the surface were not lost; only from inside.
+    /// Cycles has tables made with it (Blender 4.0 to 5.2) but renders without it, so that rough glass loses up to 2 % of
+    /// the light at each crossing from inside. To agree, it is part of what [`compensation`] brings to 1.
+    pub(super) stray: f32,
+    /// Albedo of reflection and refraction together with `stray`, averaged over directions.
     pub(super) mean: f32,
 }
 
@@ -68,16 +72,18 @@ pub(super) fn dielectric(roughness: f32, cos: f32, eta: f32) -> Dielectric {
     let side = usize::from(eta < 1.0);
     let a = low.sides[side].albedos.at(roughness, cos);
     let b = high.sides[side].albedos.at(roughness, cos);
-    let layer = if side == 0 {
-        mix(a[3], b[3])
+    let (layer, stray) = if side == 0 {
+        (mix(a[3], b[3]), 0.0)
     } else {
-        mix(low.sides[0].albedos.at(roughness, cos)[3], high.sides[0].albedos.at(roughness, cos)[3])
+        let [a_layer, b_layer] = [low, high].map(|slice| slice.sides[0].albedos.at(roughness, cos)[3]);
+        (mix(a_layer, b_layer), mix(a[3], b[3]))
     };
     Dielectric {
         rise: mix(a[0], b[0]),
         through: mix(a[1], b[1]),
         refracted: mix(a[2], b[2]),
         layer,
+        stray,
         mean: mix(
             interpolate(&low.sides[side].means, roughness),
             interpolate(&high.sides[side].means, roughness),
@@ -178,14 +184,20 @@ fn dielectric_table(eta: f32) -> Table<4> {
             integrate(alpha, cos, |wo, h| {
                 let rise = fresnel::dielectric_rise(wo.dot(h).min(1.0), eta);
                 let reflected = reflection_masking(alpha, wo, h);
-                let refracted = refraction_masking(alpha, wo, h, eta);
-                let layer = if reflected > 0.0 { rise } else { 0.0 };
-                [reflected * rise, refracted * (1.0 - rise), refracted, layer]
+                let (refracted, stray) = refraction_masking(alpha, wo, h, eta);
+                // `layer` from outside, `stray` from inside.
+                let last = match (eta < 1.0, reflected > 0.0) {
+                    (true, _) => stray * (1.0 - rise),
+                    (false, true) => rise,
+                    (false, false) => 0.0,
+                };
+                [reflected * rise, refracted * (1.0 - rise), refracted, last]
             })
         },
-        |roughness, cos, node| {
+        |roughness, cos, [rise, through, _, last]| {
             let total = reflection(roughness, cos).total;
-            f0 * (total - node[0]) + node[0] + (1.0 - f0) * node[1]
+            let stray = if eta < 1.0 { *last } else { 0.0 };
+            f0 * (total - rise) + rise + (1.0 - f0) * (through + stray)
         },
     )
 }
@@ -196,11 +208,12 @@ fn reflection_masking(alpha: f32, wo: Vec3, h: Vec3) -> f32 {
     if wi.z > 0.0 { masking_ratio(alpha, wo.z, wi.z) } else { 0.0 }
 }
 
-/// G2/G1 of the direction refracted at `h`; 0 where there is none or it stays above the surface.
-fn refraction_masking(alpha: f32, wo: Vec3, h: Vec3, eta: f32) -> f32 {
+/// G2/G1 of the direction refracted at `h`: where it ends below the surface, and where above.
+fn refraction_masking(alpha: f32, wo: Vec3, h: Vec3, eta: f32) -> (f32, f32) {
     match fresnel::refract(wo, h, eta) {
-        Some(wi) if wi.z < 0.0 => masking_ratio(alpha, wo.z, wi.z),
-        _ => 0.0,
+        Some(wi) if wi.z < 0.0 => (masking_ratio(alpha, wo.z, wi.z), 0.0),
+        Some(wi) => (0.0, masking_ratio(alpha, wo.z, wi.z)),
+        None => (0.0, 0.0),
     }
 }
 

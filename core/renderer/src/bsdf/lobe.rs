@@ -103,7 +103,8 @@ impl Lobe {
     /// Value of the BSDF (no cosine) and density of [`Lobe::sample`] (per solid angle), towards `wi`; the caller has
     /// made sure that `wi` is on the right side of both normals and that the lobe is no delta.
     pub(super) fn eval(&self, frame: &ShadingFrame, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
-        let (cos_o, cos_i) = (wo.dot(frame.ns), wi.dot(frame.ns));
+        // Floors keep grazing pairs finite; their cosine takes them out of any integral.
+        let (cos_o, cos_i) = (wo.dot(frame.ns).max(1e-6), wi.dot(frame.ns).abs().max(1e-6));
         match self.shape {
             Shape::Lambert => (self.weight * FRAC_1_PI, cos_i * FRAC_1_PI),
             Shape::Reflection { alpha } => {
@@ -126,7 +127,7 @@ impl Lobe {
                 let (lambda_o, lambda_i) = (ggx::lambda(alpha, cos_o), ggx::lambda(alpha, cos_i));
                 let jacobian = eta * eta * hi / sum.length_squared();
                 let common = d * ho * jacobian / cos_o;
-                let value = common / (-cos_i * (1.0 + lambda_o + lambda_i));
+                let value = common / (cos_i * (1.0 + lambda_o + lambda_i));
                 (self.factor(ho.min(1.0)) * value, common / (1.0 + lambda_o))
             }
         }
