@@ -104,7 +104,7 @@ fn cells_on_plane(lights: &Lights, count: u32) -> Vec<Cell> {
     let mut random = Random(7);
     let mut cells = vec![Cell::default(); BINS * BINS];
     for _ in 0..count {
-        let photon = lights.emit(random.uniforms()).unwrap();
+        let photon = lights.emit(random.uniforms()).expect("the lights emit");
         let distance = (-0.3 - photon.origin.z) / photon.direction.z;
         if photon.direction.z >= 0.0 || distance < photon.lit_from.max(0.0) {
             continue;

@@ -7,9 +7,12 @@ use glam::{Vec2, Vec3};
 use super::proxy::Hull;
 use super::spherical_rectangle::SphericalRectangle;
 use super::spread::Spread;
-use super::{Crossing, LightSample, Photon, Ray, proxy, warp};
+use super::{Crossing, LARGEST_LENGTH, LightSample, Photon, Ray, proxy, warp};
 use crate::color::Rgb;
 use crate::scene::Lamp;
+
+/// Shorter sides (scene units, the scene filling a unit cube) count as this long.
+const SMALLEST_SIDE: f32 = 1e-6;
 
 /// An ellipse whose bounding rectangle covers more than this (sr) is sampled by the rectangle's solid angle, which
 /// wastes a fifth of the samples and keeps the rest even close to the lamp; smaller ones are sampled by area.
@@ -43,22 +46,24 @@ enum Region {
 }
 
 impl AreaLamp {
-    /// `None` for a lamp without area.
+    /// `None` for a lamp without area or direction.
     pub(super) fn new(lamp: &Lamp, size: [f32; 2], spread: f32, round: bool) -> Option<Self> {
-        let half = Vec2::from(size).abs() * 0.5;
-        let area = 4.0 * half.x * half.y * if round { FRAC_PI_4 } else { 1.0 };
+        let sides = Vec2::from(size).abs();
+        if !(sides.min_element() > 0.0 && sides.max_element() <= LARGEST_LENGTH) {
+            return None;
+        }
+        let sides = sides.max(Vec2::splat(SMALLEST_SIDE));
         let normal = lamp.axis.try_normalize()?;
         // A sheared parent leaves axes that are not at right angles: the normal is kept, the rest follows.
         let x_axis = lamp.x_axis.reject_from_normalized(normal).try_normalize()?;
-        let y_axis = normal.cross(x_axis);
-        (area > 0.0 && area.is_finite()).then(|| Self {
+        Some(Self {
             center: lamp.position,
             x_axis,
-            y_axis,
+            y_axis: normal.cross(x_axis),
             normal,
-            half,
+            half: sides * 0.5,
             round,
-            area,
+            area: sides.x * sides.y * if round { FRAC_PI_4 } else { 1.0 },
             power: lamp.power,
             spread: Spread::new(spread),
         })

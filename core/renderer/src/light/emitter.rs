@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::select::Cdf;
-use super::{LightSample, Photon, warp};
+use super::{LightSample, Photon, is_in_reach, warp};
 use crate::color::Rgb;
 use crate::scene::{Mesh, Object};
 
@@ -45,7 +45,7 @@ impl MeshEmitter {
             let corners = object.corners(index);
             let area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
             let weight = area * f64::from(radiance.mean());
-            if !(weight > 0.0 && weight.is_finite()) {
+            if !(weight > 0.0 && corners.iter().all(|corner| is_in_reach(corner.as_vec3()))) {
                 continue;
             }
             triangles.push(index as u32);

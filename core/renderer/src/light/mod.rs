@@ -10,6 +10,7 @@ mod emitter;
 mod point;
 mod proxy;
 mod select;
+mod shape;
 mod spherical_rectangle;
 mod spot;
 mod spread;
@@ -21,19 +22,23 @@ use arrayvec::ArrayVec;
 use glam::Vec3;
 
 use crate::color::Rgb;
-use crate::scene::{Lamp, LampShape, Scene};
-use area::AreaLamp;
+use crate::scene::Scene;
 use distant::SceneBall;
 use emitter::MeshEmitter;
-use point::PointLamp;
 pub use proxy::LampProxy;
 use select::Cdf;
-use spot::SpotCone;
-use sun::SunLamp;
+use shape::{Light, Shape};
 use world::WorldLight;
 
 /// Up to this many lights, each look-up weighs them all by what they give at the point; more are weighed by power.
 const WEIGHED_AT_POINT: usize = 64;
+
+/// Lengths and distances from the scene's middle beyond this (scene units, the scene filling a unit cube) are a mistake:
+/// the light is left out.
+const LARGEST_LENGTH: f32 = 1e9;
+
+/// Power, irradiance and radiance are cut here, so that no sum or product of them leaves the range of f32.
+const BRIGHTEST: f32 = 1e12;
 
 /// A photon as it leaves its light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,20 +113,6 @@ struct Crossing {
     pdf: f32,
 }
 
-enum Shape {
-    Point(PointLamp),
-    Area(AreaLamp),
-    Sun(SunLamp),
-    Mesh(MeshEmitter),
-}
-
-struct Light {
-    shape: Shape,
-    lamp: Option<usize>,
-    casts_shadow: bool,
-    visibility: u32,
-}
-
 /// All lights of a scene.
 pub struct Lights {
     lights: Vec<Light>,
@@ -140,7 +131,7 @@ pub struct Lights {
 
 impl Lights {
     /// Lights of a scene; `emission[m]` is the radiance (W·m⁻²·sr⁻¹) both sides of material m emit, black where none.
-    /// Lamps without power or size are left out; negative and non-finite channels count as zero.
+    /// Lamps without power or size are left out; negative channels count as zero.
     #[must_use]
     pub fn build(scene: &Scene, emission: &[Rgb]) -> Self {
         let emission: Vec<Rgb> = emission.iter().map(|&radiance| positive(radiance)).collect();
@@ -325,69 +316,12 @@ impl Lights {
     }
 }
 
-impl Light {
-    /// `None` for a lamp that gives no light.
-    fn from_lamp(index: usize, lamp: &Lamp) -> Option<Self> {
-        let lamp = &Lamp { power: positive(lamp.power), ..lamp.clone() };
-        if lamp.power.is_black() || !lamp.position.is_finite() {
-            return None;
-        }
-        let shape = match lamp.shape {
-            LampShape::Point { radius, soft_falloff } => {
-                Shape::Point(PointLamp::new(lamp, radius, soft_falloff, None))
-            }
-            LampShape::Spot { radius, soft_falloff, cone_angle, blend } => {
-                let cone = SpotCone::new(lamp.axis, cone_angle, blend)?;
-                Shape::Point(PointLamp::new(lamp, radius, soft_falloff, Some(cone)))
-            }
-            LampShape::Sun { angle } => Shape::Sun(SunLamp::new(lamp, angle)?),
-            LampShape::Rectangle { size, spread } => Shape::Area(AreaLamp::new(lamp, size, spread, false)?),
-            LampShape::Ellipse { size, spread } => Shape::Area(AreaLamp::new(lamp, size, spread, true)?),
-        };
-        Some(Self { shape, lamp: Some(index), casts_shadow: lamp.casts_shadow, visibility: lamp.visibility })
-    }
-
-    fn flux(&self, ball: &SceneBall) -> Rgb {
-        match &self.shape {
-            Shape::Point(lamp) => lamp.flux(),
-            Shape::Area(lamp) => lamp.flux(),
-            Shape::Sun(lamp) => lamp.flux(ball),
-            Shape::Mesh(mesh) => mesh.flux(),
-        }
-    }
-
-    fn irradiance_estimate(&self, p: Vec3) -> f32 {
-        match &self.shape {
-            Shape::Point(lamp) => lamp.irradiance_estimate(p),
-            Shape::Area(lamp) => lamp.irradiance_estimate(p),
-            Shape::Sun(lamp) => lamp.irradiance_estimate(),
-            Shape::Mesh(mesh) => mesh.irradiance_estimate(p),
-        }
-    }
-
-    /// True where rays can meet the light. Light that passes through everything is left to direct sampling alone, since a
-    /// ray ends at what it should pass through.
-    fn can_be_met(&self) -> bool {
-        let has_extent = match &self.shape {
-            Shape::Point(lamp) => lamp.has_extent(),
-            Shape::Area(lamp) => lamp.has_extent(),
-            Shape::Sun(lamp) => lamp.has_extent(),
-            Shape::Mesh(_) => true,
-        };
-        has_extent && self.casts_shadow
-    }
-
-    /// What holds the lamp, where rays can meet it.
-    fn hull(&self) -> Option<proxy::Hull> {
-        match &self.shape {
-            Shape::Point(lamp) if self.can_be_met() => Some(lamp.hull()),
-            Shape::Area(lamp) if self.can_be_met() => Some(lamp.hull()),
-            _ => None,
-        }
-    }
+/// Negative channels and those that are not numbers made zero, enormous ones cut.
+fn positive(color: Rgb) -> Rgb {
+    color.map(|c| if c > 0.0 { c.min(BRIGHTEST) } else { 0.0 })
 }
 
-/// Negative and non-finite channels made zero.
-fn positive(color: Rgb) -> Rgb {
-    color.map(|c| if c.is_finite() { c.max(0.0) } else { 0.0 })
+/// True for numbers of a sensible size.
+fn is_in_reach(p: Vec3) -> bool {
+    p.abs().cmple(Vec3::splat(LARGEST_LENGTH)).all()
 }

@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::proxy::Hull;
 use super::spot::SpotCone;
-use super::{Crossing, LightSample, Photon, Ray, proxy, warp};
+use super::{Crossing, LARGEST_LENGTH, LightSample, Photon, Ray, proxy, warp};
 use crate::color::Rgb;
 use crate::math::Frame;
 use crate::scene::Lamp;
@@ -29,9 +29,11 @@ pub(super) struct PointLamp {
 }
 
 impl PointLamp {
-    pub(super) fn new(lamp: &Lamp, radius: f32, soft: bool, cone: Option<SpotCone>) -> Self {
-        let radius = if radius >= SMALLEST_RADIUS && radius.is_finite() { radius } else { 0.0 };
-        Self { center: lamp.position, radius, soft, intensity: lamp.power * (0.25 * FRAC_1_PI), cone }
+    /// `None` for a radius that is no length.
+    pub(super) fn new(lamp: &Lamp, radius: f32, soft: bool, cone: Option<SpotCone>) -> Option<Self> {
+        let intensity = lamp.power * (0.25 * FRAC_1_PI);
+        let radius = if radius < SMALLEST_RADIUS { 0.0 } else { radius };
+        (radius <= LARGEST_LENGTH).then_some(Self { center: lamp.position, radius, soft, intensity, cone })
     }
 
     /// False for a true point, which no ray can meet.
@@ -168,12 +170,13 @@ impl PointLamp {
         }
         let sin_squared = height * (2.0 - height);
         let half_chord_squared = self.radius * self.radius - to_center * to_center * sin_squared;
-        to_center * (1.0 - height) - half_chord_squared.max(0.0).sqrt()
+        (to_center * (1.0 - height) - half_chord_squared.max(0.0).sqrt()).max(0.0)
     }
 
     /// Distance from inside the sphere to where `wi` leaves it.
     fn distance_inside(&self, to: Vec3, wi: Vec3) -> f32 {
         let along = to.dot(wi);
-        along + (self.radius * self.radius - (to - wi * along).length_squared()).max(0.0).sqrt()
+        let half_chord_squared = self.radius * self.radius - (to - wi * along).length_squared();
+        (along + half_chord_squared.max(0.0).sqrt()).max(0.0)
     }
 }

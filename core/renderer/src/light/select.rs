@@ -109,3 +109,51 @@ fn mixed(weight: f64, total: f64, positive: f64) -> f64 {
 fn rest(u: f64) -> f32 {
     (u as f32).clamp(0.0, 1.0 - f32::EPSILON / 2.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_of_no_weight_are_never_chosen() {
+        let cdf = Cdf::new([0.0, 0.0, 3.0, 0.0, 1e-3, 0.0, 0.0]).unwrap();
+        for i in 0..=1000 {
+            let chosen = cdf.choose(i as f32 / 1000.0);
+            assert!(chosen.index == 2 || chosen.index == 4, "{chosen:?}");
+            assert!(chosen.probability > 0.0 && (0.0..1.0).contains(&chosen.rest), "{chosen:?}");
+        }
+        assert_eq!(cdf.choose(1.0).index, 4);
+        assert_eq!(*cdf.sums.last().unwrap(), 1.0);
+        assert!(Cdf::new([0.0, 0.0]).is_none() && Cdf::new([]).is_none());
+    }
+
+    #[test]
+    fn probabilities_are_weights_less_the_even_share() {
+        let weights = [1.0, 0.0, 3.0];
+        let cdf = Cdf::with_even_share(&weights).unwrap();
+        for (index, expected) in [0.9 * 0.25 + 0.05, 0.0, 0.9 * 0.75 + 0.05].into_iter().enumerate() {
+            assert!((cdf.probability(index) - expected).abs() < 1e-12);
+            assert!((f64::from(probability(&weights.map(|w| w as f32), index)) - expected).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn both_ways_of_choosing_agree() {
+        let weights = [0.5_f32, 0.0, 2.0, 1.0, 0.0];
+        let cdf = Cdf::with_even_share(&weights.map(f64::from)).unwrap();
+        for i in 0..1000 {
+            let u = (i as f32 + 0.5) / 1000.0;
+            let (a, b) = (cdf.choose(u), choose(&weights, u).unwrap());
+            assert_eq!(a.index, b.index);
+            assert!((a.probability - b.probability).abs() < 1e-6 && (a.rest - b.rest).abs() < 1e-5);
+        }
+        assert!(choose(&[0.0, 0.0], 0.5).is_none() && choose(&[], 0.5).is_none());
+    }
+
+    #[test]
+    fn the_rest_of_the_number_is_uniform_again() {
+        let cdf = Cdf::new([1.0, 4.0]).unwrap();
+        assert!((cdf.choose(0.1).rest - 0.5).abs() < 1e-6);
+        assert!((cdf.choose(0.4).rest - 0.25).abs() < 1e-6);
+    }
+}

@@ -56,3 +56,61 @@ impl SphericalRectangle {
         [x, y]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    /// Solid angle of the rectangle from 0 to a and 0 to b at distance d: atan(a b / (d √(a² + b² + d²))).
+    fn quadrant(a: f64, b: f64, d: f64) -> f64 {
+        (a * b / (d * (a * a + b * b + d * d).sqrt())).atan()
+    }
+
+    #[test]
+    fn solid_angle_matches_its_closed_form() {
+        for (x, y, d) in [
+            ([-1.0, 2.0], [-0.5, 0.3], 0.7),
+            ([1.0, 3.0], [-2.0, -1.0], 2.0),
+            ([-1.0, 1.0], [-1.0, 1.0], 1.0),
+        ] {
+            let corner = |i: usize, k: usize| quadrant(x[i], y[k], d);
+            let expected = corner(1, 1) - corner(0, 1) - corner(1, 0) + corner(0, 0);
+            let value = SphericalRectangle::new(x, y, d).unwrap().solid_angle;
+            assert!((value / expected - 1.0).abs() < 1e-10, "{value} {expected}");
+        }
+        // A face of a cube around the point; a plane close by.
+        let cube = SphericalRectangle::new([-1.0, 1.0], [-1.0, 1.0], 1.0).unwrap();
+        assert!((cube.solid_angle - 4.0 * PI / 6.0).abs() < 1e-12);
+        let plane = SphericalRectangle::new([-1.0, 1.0], [-1.0, 1.0], 1e-9).unwrap();
+        assert!((plane.solid_angle - 2.0 * PI).abs() < 1e-6);
+    }
+
+    #[test]
+    fn samples_share_the_solid_angle_evenly() {
+        // The share of samples in each part of the rectangle is that part's share of the solid angle.
+        let (x, y, d) = ([-0.2, 1.3], [0.1, 0.9], 0.15);
+        let rectangle = SphericalRectangle::new(x, y, d).unwrap();
+        let part = SphericalRectangle::new([0.0, 0.3], [0.1, 0.4], d).unwrap();
+        let steps = 1000_u16;
+        let mut inside = 0.0;
+        for i in 0..steps {
+            for k in 0..steps {
+                let u = [i, k].map(|c| (f32::from(c) + 0.5) / f32::from(steps));
+                let [px, py] = rectangle.sample(u);
+                assert!((x[0]..=x[1]).contains(&px) && (y[0]..=y[1]).contains(&py));
+                inside += f64::from(u8::from((0.0..=0.3).contains(&px) && py <= 0.4));
+            }
+        }
+        let share = inside / f64::from(steps).powi(2);
+        assert!((share - part.solid_angle / rectangle.solid_angle).abs() < 2e-3, "{share}");
+    }
+
+    #[test]
+    fn what_is_too_small_or_edge_on_is_left_to_area_sampling() {
+        assert!(SphericalRectangle::new([-1e-3, 1e-3], [-1e-3, 1e-3], 1.0).is_none());
+        assert!(SphericalRectangle::new([1.0, 2.0], [-1.0, 1.0], 0.0).is_none());
+        assert!(SphericalRectangle::new([1.0, 2.0], [-1.0, 1.0], 1e-9).is_none());
+    }
+}

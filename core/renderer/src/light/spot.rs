@@ -23,7 +23,8 @@ impl SpotCone {
         let quarter = (0.25 * cone_angle).clamp(0.0, 0.5 * PI).sin();
         let edge = 2.0 * quarter * quarter;
         let axis = axis.try_normalize()?;
-        (edge > 0.0).then(|| Self { axis, edge, blend: blend.clamp(0.0, 1.0) })
+        let blend = if blend > 0.0 { blend.min(1.0) } else { 0.0 };
+        (edge > 0.0).then_some(Self { axis, edge, blend })
     }
 
     /// Share of the point lamp's light that leaves along the unit vector `direction`.

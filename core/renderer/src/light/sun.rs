@@ -29,8 +29,9 @@ impl SunLamp {
     /// From the angular diameter (rad). `None` without a direction.
     pub(super) fn new(lamp: &Lamp, angle: f32) -> Option<Self> {
         let towards = -lamp.axis.try_normalize()?;
-        let half = (0.5 * angle).min(FRAC_PI_2);
+        let half = 0.5 * angle;
         let (cone, projected_solid_angle) = if half >= SMALLEST_HALF_ANGLE {
+            let half = half.min(FRAC_PI_2);
             (2.0 * (0.5 * half).sin().powi(2), half.sin().powi(2) / FRAC_1_PI)
         } else {
             (0.0, 1.0)
