@@ -32,6 +32,8 @@ LAMP_DROP = 0.1
 CAMERA = (278.0, 273.0, -800.0)
 FIELD_OF_VIEW = 2.0 * math.atan(0.025 / 2.0 / 0.035)
 """Of the published camera: a square of 25 mm behind a lens of 35 mm."""
+EXPOSURE = 1.0
+"""Stops, in the view transform alone: white walls come out as bright as in photographs of the box."""
 CENTER = 278.0
 """The camera's x, which becomes Blender's x = 0."""
 
@@ -77,6 +79,7 @@ def build_room(
     )
     lamp.visible_camera = True
     common.add_camera(to_blender(CAMERA), (math.pi / 2.0, 0.0, 0.0), FIELD_OF_VIEW, (512, 512))
+    bpy.context.scene.view_settings.exposure = EXPOSURE
 
 
 def build() -> None:

@@ -25,10 +25,13 @@ RESOLUTION = (48, 48)
 BALL_RADIUS = 0.8
 FLOOR_ALBEDO = (0.6, 0.55, 0.5)
 LAMP_COLOR = (1.0, 0.8, 0.6)
-PLACE, TARGET = (0.9, -0.6, 3.2), (0.15, -0.25, 0.7)
-"""Of a lamp out of the picture, and where it shines."""
-SEEN_PLACE, SEEN_TARGET = (1.0, 0.4, 1.5), (0.2, -1.6, 0.5)
-"""Of a lamp in the picture."""
+CAMERA = (0.0, -4.0, 2.4)
+ABOVE = ((0.9, -0.6, 3.2), (0.15, -0.25, 0.7))
+"""Out of the picture: where the lamp is, and where it shines."""
+BESIDE = ((1.0, 0.4, 1.5), (0.2, -1.6, 0.5))
+"""In the picture, beside the ball."""
+BEHIND = ((2.2, 5.6, 0.3), CAMERA)
+"""In the picture, beyond the floor."""
 REGIONS = {"whole": (0.0, 0.0, 1.0, 1.0), "middle": (0.36, 0.36, 0.64, 0.64)}
 """Parts of the frame whose means are compared: left, bottom, right, top. The middle shows nothing but the ball."""
 
@@ -40,8 +43,8 @@ class Lamp:
     kind: str
     energy: float
     settings: dict[str, Any] = field(default_factory=dict)
-    seen: bool = False
-    """True: the camera sees the lamp's own shape, and the lamp hangs in the picture."""
+    where: tuple[common.Point, common.Point] = ABOVE
+    """Its place, and where it shines. In the picture the camera sees its own shape, and there is a dim world."""
 
 
 HALF_SPREAD = math.radians(90.0)
@@ -49,7 +52,7 @@ LAMPS = {
     "point": Lamp("POINT", 200.0, {"shadow_soft_size": 0.0}),
     "point_soft": Lamp("POINT", 200.0, {"shadow_soft_size": 0.25, "use_soft_falloff": True}),
     "point_sphere": Lamp("POINT", 200.0, {"shadow_soft_size": 0.25, "use_soft_falloff": False}),
-    "point_seen": Lamp("POINT", 60.0, {"shadow_soft_size": 0.25, "use_soft_falloff": False}, seen=True),
+    "point_seen": Lamp("POINT", 60.0, {"shadow_soft_size": 0.25, "use_soft_falloff": False}, BESIDE),
     "spot": Lamp("SPOT", 300.0, {"shadow_soft_size": 0.0, "spot_size": 0.9, "spot_blend": 0.0}),
     "spot_blend": Lamp("SPOT", 300.0, {"shadow_soft_size": 0.0, "spot_size": 0.9, "spot_blend": 0.6}),
     "spot_soft": Lamp(
@@ -64,15 +67,18 @@ LAMPS = {
     ),
     "sun": Lamp("SUN", 2.0, {"angle": 0.0}),
     "sun_angle": Lamp("SUN", 2.0, {"angle": math.radians(12.0)}),
+    "sun_seen": Lamp("SUN", 0.02, {"angle": math.radians(6.0)}, BEHIND),
     "area_square": Lamp("AREA", 120.0, {"shape": "SQUARE", "size": 0.9}),
     "area_rectangle": Lamp("AREA", 120.0, {"shape": "RECTANGLE", "size": 1.4, "size_y": 0.5}),
     "area_disk": Lamp("AREA", 120.0, {"shape": "DISK", "size": 1.0}),
     "area_ellipse": Lamp("AREA", 120.0, {"shape": "ELLIPSE", "size": 1.4, "size_y": 0.6}),
     "area_spread": Lamp("AREA", 60.0, {"shape": "SQUARE", "size": 0.9, "spread": HALF_SPREAD}),
     "area_disk_spread": Lamp("AREA", 60.0, {"shape": "DISK", "size": 1.0, "spread": HALF_SPREAD}),
-    "area_seen": Lamp("AREA", 60.0, {"shape": "RECTANGLE", "size": 0.6, "size_y": 0.4}, seen=True),
+    "area_seen": Lamp("AREA", 60.0, {"shape": "RECTANGLE", "size": 0.6, "size_y": 0.4}, BESIDE),
 }
 """By name; `emissive_quad` and `world` stand beside them in `LAMP_CASES`."""
+MATERIAL_LAMP = Lamp("AREA", 120.0, {"shape": "SQUARE", "size": 2.0})
+"""Large, so that a path tracer finds it behind glass and in mirrors."""
 
 Surface = Callable[[bpy.types.NodeTree], bpy.types.NodeSocket]
 """Adds nodes to a tree and returns the shader socket that goes to the output."""
@@ -161,7 +167,10 @@ def build(case: str) -> bpy.types.Scene:
     else:
         material, light = name.split("/")
         _add_ball(MATERIALS[material])
-        _add_light("world" if light == "world" else "area_square")
+        if light == "world":
+            _add_light("world")
+        else:
+            _add_lamp(MATERIAL_LAMP)
     return scene
 
 
@@ -169,7 +178,7 @@ def _add_floor_and_camera() -> None:
     side = 3.0
     floor = [(-side, -side, 0.0), (side, -side, 0.0), (side, side, 0.0), (-side, side, 0.0)]
     common.add_polygons("Floor", [floor], [common.diffuse_material("Floor", FLOOR_ALBEDO)])
-    common.add_camera((0.0, -4.0, 2.4), (math.radians(66.0), 0.0, 0.0), math.radians(40.0), RESOLUTION)
+    common.add_camera(CAMERA, (math.radians(66.0), 0.0, 0.0), math.radians(40.0), RESOLUTION)
 
 
 def _add_ball(surface: Surface) -> None:
@@ -186,13 +195,17 @@ def _add_ball(surface: Surface) -> None:
 
 def _add_light(name: str) -> None:
     if name == "world":
-        background = bpy.context.scene.world.node_tree.nodes["Background"]
-        background.inputs["Color"].default_value = (*LAMP_COLOR, 1.0)
-        background.inputs["Strength"].default_value = 0.5
+        _add_world(0.5)
     elif name == "emissive_quad":
         _add_emissive_quad()
     else:
         _add_lamp(LAMPS[name])
+
+
+def _add_world(strength: float) -> None:
+    background = bpy.context.scene.world.node_tree.nodes["Background"]
+    background.inputs["Color"].default_value = (*LAMP_COLOR, 1.0)
+    background.inputs["Strength"].default_value = strength
 
 
 def _add_lamp(lamp: Lamp) -> None:
@@ -202,8 +215,10 @@ def _add_lamp(lamp: Lamp) -> None:
     for setting, value in lamp.settings.items():
         setattr(light, setting, value)
     thing = common.add_object("Lamp", light)
-    thing.visible_camera = lamp.seen
-    _aim(thing, *((SEEN_PLACE, SEEN_TARGET) if lamp.seen else (PLACE, TARGET)))
+    _aim(thing, *lamp.where)
+    if lamp.where != ABOVE:
+        thing.visible_camera = True
+        _add_world(0.2)
 
 
 def _add_emissive_quad() -> None:
@@ -212,7 +227,7 @@ def _add_emissive_quad() -> None:
     tree.links.new(shader("Emission", Color=LAMP_COLOR, Strength=40.0)(tree), surface)
     corners = [(-0.45, -0.45, 0.0), (0.45, -0.45, 0.0), (0.45, 0.45, 0.0), (-0.45, 0.45, 0.0)]
     quad = common.add_polygons("Quad", [corners], [material])
-    _aim(quad, PLACE, TARGET)
+    _aim(quad, *ABOVE)
 
 
 def _aim(thing: bpy.types.Object, place: common.Point, target: common.Point) -> None:
