@@ -132,9 +132,10 @@ fn rows<T: numpy::Element + Copy + Default, const N: usize>(
         return Err(SceneError::new_err(message));
     }
     let mut out = vec![[T::default(); N]; shape[0]];
-    match array.as_slice() {
-        Ok(values) => out.as_flattened_mut().copy_from_slice(values),
-        Err(_) => {
+    // numpy calls an array in Fortran's order contiguous too: Blender's matrices come that way.
+    match array.as_slice().ok().filter(|_| array.is_c_contiguous()) {
+        Some(values) => out.as_flattened_mut().copy_from_slice(values),
+        None => {
             for (to, from) in out.as_flattened_mut().iter_mut().zip(array.as_array().iter()) {
                 *to = *from;
             }

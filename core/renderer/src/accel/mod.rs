@@ -73,6 +73,7 @@ pub struct Accel<'a> {
     records: Vec<TriangleRecord>,
     objects: Vec<ObjectRecord>,
     sees_lamps: bool,
+    camera_sees_lamps: bool,
 }
 
 impl<'a> Accel<'a> {
@@ -134,7 +135,8 @@ impl<'a> Accel<'a> {
             )?;
         }
         let embree = top.commit(&keep_going)?;
-        Ok(Self { scene, embree, records, objects, sees_lamps: !proxies.is_empty() })
+        let camera_sees_lamps = proxies.iter().any(|proxy| proxy.visibility & visibility::CAMERA != 0);
+        Ok(Self { scene, embree, records, objects, sees_lamps: !proxies.is_empty(), camera_sees_lamps })
     }
 
     /// The scene that is traced.
@@ -147,6 +149,12 @@ impl<'a> Accel<'a> {
     #[must_use]
     pub const fn lamp_bit(&self) -> u32 {
         if self.sees_lamps { visibility::LAMP } else { 0 }
+    }
+
+    /// The lamp bit for camera rays, which see lamps only where Blender's object says so.
+    #[must_use]
+    pub const fn camera_lamp_bit(&self) -> u32 {
+        if self.camera_sees_lamps { visibility::LAMP } else { 0 }
     }
 
     /// True when the hit is a lamp's proxy.

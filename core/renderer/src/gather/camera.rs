@@ -21,7 +21,7 @@ pub fn camera_ray(camera: &Camera, lit: &LitScene<'_>, position: DVec2) -> (Ray,
     let to_scene = &camera.scene_from_camera;
     let start = to_scene.transform_point3(origin + direction * near.max(0.0));
     let direction = to_scene.transform_vector3(direction).normalize().as_vec3();
-    let (ray, moved) = lit.entering(start, direction, visibility::CAMERA);
+    let (ray, moved) = lit.entering(start, direction, visibility::CAMERA | lit.accel.camera_lamp_bit());
     #[expect(clippy::cast_possible_truncation, reason = "rays are traced in f32")]
     let reach = (far - near.max(0.0)) as f32 - moved;
     (ray, reach.max(0.0))

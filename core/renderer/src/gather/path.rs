@@ -3,6 +3,8 @@
 //!
 //! Path classes are a partition: at every vertex each lobe is either read from the pyramid or followed, never both.
 
+use glam::Vec3;
+
 use crate::accel::{Hit, Ray};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
@@ -71,20 +73,14 @@ impl<'a> Gatherer<'a> {
             let mut hit = known.take().unwrap_or_else(|| lit.accel.intersect(&ray));
             if hit.is_some_and(|hit| lit.accel.is_lamp(hit.object)) {
                 hit = lit.accel.intersect(&Ray { mask: ray.mask & !visibility::LAMP, ..ray });
-                let reach = hit.map_or(f32::INFINITY, |hit| hit.t);
-                let through = met.through;
-                lit.lights.lamps_crossed(
-                    ray.origin,
-                    ray.direction,
-                    reach,
-                    sampled.kind,
-                    &mut |radiance, pdf| {
-                        met.light += through * radiance * sampled.weight(pdf);
-                    },
-                );
+                let end = hit.map_or(f32::INFINITY, |hit| met.distance + hit.t);
+                let (span, through) = (met.distance..end, met.through);
+                lit.lights.lamps_crossed(from, ray.direction, span, sampled.kind, &mut |radiance, pdf| {
+                    met.light += through * radiance * sampled.weight(pdf);
+                });
             }
             let Some(hit) = hit else {
-                met.light += met.through * self.escaped(&ray, sampled);
+                met.light += met.through * self.escaped(from, ray.direction, sampled);
                 return met;
             };
             let surface = lit.surface(&ray, hit);
@@ -115,15 +111,12 @@ impl<'a> Gatherer<'a> {
     }
 
     /// Light from outside the scene.
-    fn escaped(&self, ray: &Ray, sampled: Sampled) -> Rgb {
+    fn escaped(&self, from: Vec3, direction: Vec3, sampled: Sampled) -> Rgb {
         let world = &self.lit.accel.scene().world;
         let mut light = if world.visibility & sampled.kind == 0 { Rgb::BLACK } else { world.radiance };
-        // As in Blender, lamps are never seen by the camera itself.
-        if sampled.kind != visibility::CAMERA {
-            self.lit.lights.suns(ray.origin, ray.direction, sampled.kind, &mut |radiance, pdf| {
-                light += radiance * sampled.weight(pdf);
-            });
-        }
+        self.lit.lights.suns(from, direction, sampled.kind, &mut |radiance, pdf| {
+            light += radiance * sampled.weight(pdf);
+        });
         light
     }
 

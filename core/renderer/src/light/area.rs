@@ -144,7 +144,7 @@ impl AreaLamp {
         }
         let distance = height / cos;
         let offset = Vec2::new(ray.wi.dot(self.x_axis), ray.wi.dot(self.y_axis)) * distance;
-        if distance > ray.t_max || !self.contains(foot + offset) {
+        if !ray.span.contains(&distance) || !self.contains(foot + offset) {
             return None;
         }
         let radiance = self.radiance(offset, height);

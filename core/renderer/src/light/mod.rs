@@ -18,6 +18,8 @@ mod sun;
 mod warp;
 mod world;
 
+use std::ops::Range;
+
 use arrayvec::ArrayVec;
 use glam::Vec3;
 
@@ -104,7 +106,8 @@ struct LightSample {
 struct Ray {
     from: Vec3,
     wi: Vec3,
-    t_max: f32,
+    /// Distances that count.
+    span: Range<f32>,
 }
 
 /// What a ray sees of a lamp, and the pdf with which the lamp's own sampling would have found it.
@@ -261,18 +264,18 @@ impl Lights {
         mesh.primitive_pdf(primitive as usize, t, cos) * self.choice_probability(from, index)
     }
 
-    /// Calls back, for each lamp the ray meets before `t_max`, with its radiance and the pdf per solid angle with which
+    /// Calls back, for each lamp the ray meets at a distance in `span`, with its radiance and the pdf per solid angle with which
     /// [`Lights::sample_direct`] from `from` finds this direction. Lamps do not block. Those hidden from the ray's kind
     /// (one bit of [`crate::scene::visibility`]) are skipped, as are suns and what `is_delta` stands for.
     pub fn lamps_crossed(
         &self,
         from: Vec3,
         wi: Vec3,
-        t_max: f32,
+        span: Range<f32>,
         ray_kind_bit: u32,
         each: &mut dyn FnMut(Rgb, f32),
     ) {
-        let ray = Ray { from, wi, t_max };
+        let ray = Ray { from, wi, span };
         for (index, light) in self.lights.iter().enumerate() {
             if light.visibility & ray_kind_bit == 0 || !light.can_be_met() {
                 continue;

@@ -115,7 +115,7 @@ impl PointLamp {
             (self.distance(to.length(), height), self.attenuation(-ray.wi), 1.0 / (TAU * visible))
         };
         let radiance = self.radiance() * attenuation;
-        (distance <= ray.t_max && !radiance.is_black()).then_some(Crossing { radiance, pdf })
+        (ray.span.contains(&distance) && !radiance.is_black()).then_some(Crossing { radiance, pdf })
     }
 
     /// A photon; every one carries the lamp's whole flux.
