@@ -2,6 +2,7 @@
 
 import importlib
 import importlib.util
+import sys
 from pathlib import Path
 from types import ModuleType
 
@@ -42,7 +43,14 @@ def core() -> ModuleType:
 
 def is_render_error(error: Exception) -> bool:
     """True when the core raised it with a message for the artist."""
-    return isinstance(error, core().RenderError)
+    module = sys.modules.get("rgp_core")
+    return module is not None and isinstance(error, module.RenderError)
+
+
+def versions() -> dict[str, str]:
+    """Versions of the native parts."""
+    module = core()
+    return {"rgp_core": module.__version__, "embree": module.embree_version(str(embree_library()))}
 
 
 def embree_library() -> Path:

@@ -31,7 +31,7 @@ class RenderSession:
         self._b_depsgraph = b_depsgraph
         self._log = ProblemLog()
         self._exported: ExportedScene | None = None
-        self._memory_peak = 0.0
+        self._memory_peak = 0
         self._stats: dict[str, Any] = {}
         self._error = ""
         self._cancelled = False
@@ -82,15 +82,13 @@ class RenderSession:
         finally:
             self._cancelled = not core_session.finish()
         _write_passes(core_session, b_result)
-        versions = {"blender": bpy.app.version_string, "python": platform.python_version()}
-        self._stats = stats.complete(
-            core_session.stats(), exported.seconds, versions, settings, self._log.problems
-        )
+        self._stats = self._complete(core_session.stats(), exported.seconds, settings)
 
     def _watch(self, core_session: "rgp_core.Session", b_result: Any) -> None:
         """Until the render has ended: obeys Esc, shows progress, and the picture as it fills in."""
         next_status = next_picture = time.monotonic()
         passes_shown = 0
+        self._show_status(core_session.progress())
         while not core_session.wait(_POLL_SECONDS):
             if self._engine.test_break():
                 core_session.cancel()
@@ -111,14 +109,26 @@ class RenderSession:
     def _show_status(self, progress: dict[str, Any]) -> None:
         """Progress bar, stage, time left and memory (MiB)."""
         elapsed, left = progress["seconds_elapsed"], progress["seconds_left"]
-        memory = progress["memory_bytes"] / 2**20
+        memory = progress["memory_bytes"]
         self._memory_peak = max(self._memory_peak, memory)
         status = progress["stage"]
         if left is not None:
             self._engine.update_progress(elapsed / max(elapsed + left, 1e-6))
             status += f" | Remaining {stats.clock(left)}"
-        self._engine.update_memory_stats(memory_used=memory, memory_peak=self._memory_peak)
-        self._engine.update_stats("", f"{status} | Mem {memory:.0f} MiB")
+        self._engine.update_memory_stats(memory_used=memory / 2**20, memory_peak=self._memory_peak / 2**20)
+        self._engine.update_stats("", f"{status} | Mem {memory / 2**20:.0f} MiB")
+
+    def _complete(
+        self, core_stats: dict[str, Any], export_seconds: float, settings: dict[str, dict[str, Any]]
+    ) -> dict[str, Any]:
+        """The core's figures with those only the host knows."""
+        versions = {
+            **native.versions(),
+            "blender": bpy.app.version_string,
+            "python": platform.python_version(),
+        }
+        figures = {**core_stats, "memory_peak_bytes": self._memory_peak}
+        return stats.complete(figures, export_seconds, versions, settings, self._log.problems)
 
     def _fail(self, error: Exception) -> None:
         """Keeps the message for the artist; the console gets whatever is a bug in full."""

@@ -20,7 +20,7 @@ def complete(
     return {
         **core_stats,
         "seconds": seconds,
-        "versions": {**core_stats.get("versions", {}), **versions},
+        "versions": versions,
         "settings": settings,
         "problems": [asdict(problem) for problem in problems],
     }

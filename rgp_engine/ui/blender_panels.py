@@ -50,6 +50,7 @@ def _panels() -> Iterator[Any]:
     for b_panel in bpy.types.Panel.__subclasses__():
         if _GENERAL_ENGINE not in getattr(b_panel, "COMPAT_ENGINES", ()):
             continue
-        name = b_panel.__name__
+        # The node editor's sidebar has twins of some, which share their set of engines.
+        name = b_panel.__name__.removeprefix("NODE_")
         if name not in _EXCLUDED and not name.startswith(_FREESTYLE):
             yield b_panel

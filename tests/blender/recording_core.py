@@ -119,6 +119,7 @@ class Core:
     RenderError = RenderError
     SceneBuilder = SceneBuilder
     Session = Session
+    embree_version = staticmethod(lambda _path: "4.4.0")
     last: SceneBuilder
     settings: dict[str, Any]
     seconds = 0.05
