@@ -42,7 +42,7 @@ class RGPPyramidSettings(bpy.types.PropertyGroup):
         description="Directions that keep surfaces in one cell apart: the six faces of a cube, or four parts of each",
         items=(
             ("6", "6", "The six sides of a cube", 0),
-            ("24", "24", "Four for each side of a cube: less mixing on curved surfaces", 1),
+            ("54", "54", "Nine for each side of a cube: less mixing on curved surfaces", 1),
         ),
         default="6",
     )

@@ -15,9 +15,9 @@ use crate::light::Lights;
 use crate::lit_scene::LitScene;
 use crate::photon_pass;
 use crate::progress::{Progress, Stage};
-use crate::pyramid::{Accumulator, Grid, Layout, NormalClasses, Pyramid, SurfaceTriangle};
+use crate::pyramid::{Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, SurfaceTriangle};
 use crate::scene::Scene;
-use crate::settings::RenderSettings;
+use crate::settings::{RenderSettings, parse_bins};
 use crate::stats::Stats;
 
 /// Renders `scene` into `film`, with Embree from the file `library`. `stats` grows as passes end, so that it is worth
@@ -69,7 +69,9 @@ fn passes(
 
     progress.enter(Stage::PhotonPass);
     let clock = Instant::now();
-    let accumulator = Accumulator::new(&layout, lit.lights.total_flux().max_channel());
+    let [elevation, azimuth] = parse_bins(&settings.pyramid.bins)?;
+    let bins = lit.plan.direction_bins.then_some(DirectionBins { elevation, azimuth });
+    let accumulator = Accumulator::new(&layout, lit.lights.total_flux().max_channel(), bins);
     let photons =
         photon_pass::run(&lit, &settings.photon_pass, settings.render.seed, &accumulator, progress)?;
     stats.photons.emitted = photons.emitted;
@@ -85,6 +87,8 @@ fn passes(
     stats.pyramid.levels = pyramid.level_count();
     stats.pyramid.cells = pyramid.cell_count();
     stats.pyramid.bytes = pyramid.bytes();
+    stats.pyramid.glossy_cells = pyramid.glossy_cell_count();
+    stats.pyramid.bins = bins.map_or(0, DirectionBins::count);
     stats.seconds.pyramid += clock.elapsed().as_secs_f64();
 
     progress.enter(Stage::Gather);

@@ -22,7 +22,7 @@ pub struct PyramidSettings {
     pub finest_resolution: u32,
     /// Direction bins of glossy cells, elevation × azimuth.
     pub bins: String,
-    /// Normal classes: "6" or "24".
+    /// Normal classes: "6" or "54".
     pub normal_classes: String,
     /// A cell whose parent holds fewer than four times as many photons is read from the parent.
     pub photons_per_cell: u32,
@@ -199,7 +199,7 @@ pub const KNOBS: &[Knob] = &[
     knob("photon_pass", "max_depth", int(1, 1000), "surfaces", "Surfaces a photon may visit before it is dropped; low values darken the picture"),
     knob("pyramid", "finest_resolution", int(1, 1024), "cells", "Cells of the finest level along the longest side of what the camera and its gather rays see"),
     knob("pyramid", "bins", Kind::Bins, "", "Direction bins of glossy cells, elevation x azimuth; diffuse cells have none"),
-    knob("pyramid", "normal_classes", Kind::Enum { choices: &["6", "24"] }, "", "Directions that keep surfaces in one cell apart: the six faces of a cube, or four parts of each"),
+    knob("pyramid", "normal_classes", Kind::Enum { choices: &["6", "54"] }, "", "Directions that keep surfaces in one cell apart: the six faces of a cube, or nine parts of each"),
     knob("pyramid", "photons_per_cell", int(1, 1000), "photons", "A cell is read from its parent where the parent holds fewer than four times as many photons"),
     knob("gather", "rays", int(1, 4096), "rays", "Gather rays per pixel, shared among its camera samples; more make less noise"),
     knob("gather", "camera_samples", int(1, 1024), "samples", "Camera samples per pixel, for smooth edges and shadows"),

@@ -48,7 +48,7 @@ pub(super) struct Dielectric {
     pub(super) through: f32,
     /// Albedo of refraction with transmittance 1 short of total reflection.
     pub(super) refracted: f32,
-    /// Mean of s over visible normals that reflect upwards: Cycles' estimate by which a layer dims what lies below.
+    /// Mean of s over visible normals that reflect upwards, by which Cycles dims what lies below a layer; only from outside.
     pub(super) layer: f32,
     /// What would be added to `through` if refracted light that ends above the surface were not lost; only from inside.
     /// Cycles has tables made with it (Blender 4.0 to 5.2) but renders without it, so that rough glass loses up to 2 % of
@@ -72,12 +72,8 @@ pub(super) fn dielectric(roughness: f32, cos: f32, eta: f32) -> Dielectric {
     let side = usize::from(eta < 1.0);
     let a = low.sides[side].albedos.at(roughness, cos);
     let b = high.sides[side].albedos.at(roughness, cos);
-    let (layer, stray) = if side == 0 {
-        (mix(a[3], b[3]), 0.0)
-    } else {
-        let [a_layer, b_layer] = [low, high].map(|slice| slice.sides[0].albedos.at(roughness, cos)[3]);
-        (mix(a_layer, b_layer), mix(a[3], b[3]))
-    };
+    let last = mix(a[3], b[3]);
+    let (layer, stray) = if side == 0 { (last, 0.0) } else { (0.0, last) };
     Dielectric {
         rise: mix(a[0], b[0]),
         through: mix(a[1], b[1]),

@@ -175,6 +175,12 @@ impl Bsdf<'_> {
         self.lobes.iter().filter(move |lobe| lobe.class.intersects(set))
     }
 
+    /// Unit vector to where the ray came from.
+    #[must_use]
+    pub fn wo(&self) -> Vec3 {
+        self.wo
+    }
+
     /// True when a lobe of `set` is there.
     #[must_use]
     pub fn has(&self, set: LobeSet) -> bool {

@@ -99,26 +99,28 @@ impl Layer {
         let Self { eta, f0, rough } = self;
         let reflection = energy_table::reflection(rough.roughness, cos);
         let table = energy_table::dielectric(rough.roughness, cos, eta);
-        let (rise, layer) = match rough.reflection_class() {
-            LobeSet::DELTA => {
-                let rise = fresnel::dielectric_rise(cos, eta);
-                (rise, rise)
-            }
-            _ => (table.rise, table.layer),
+        let rise = match rough.reflection_class() {
+            LobeSet::DELTA => fresnel::dielectric_rise(cos, eta),
+            _ => table.rise,
         };
         let fss = f0.lerp(Rgb::WHITE, mean_rise(eta));
-        let gain = compensation(reflection.total, reflection.mean, fss);
-        let scaled = weight * gain * share;
+        let gain = compensation(reflection.total, reflection.mean, fss) * share;
+        let reflected = gain * (f0 * (reflection.total - rise) + Rgb::splat(rise));
         lobes.push(Lobe {
             shape: Shape::Reflection { alpha: rough.alpha },
             fresnel: Fresnel::Dielectric { f0, eta },
-            weight: scaled,
-            albedo: scaled * (f0 * (reflection.total - rise) + Rgb::splat(rise)),
+            weight: weight * gain,
+            albedo: weight * reflected,
             class: rough.reflection_class(),
             slot,
         });
-        let estimate = f0.lerp(Rgb::WHITE, layer) * gain * (reflection.total * share);
-        (1.0 - estimate.max_channel()).clamp(0.0, 1.0)
+        // Below an index of 1 Cycles' estimate makes light from nothing (albedos up to 1.5): there the layer takes what it
+        // reflects.
+        let taken = match (rough.reflection_class(), eta > 1.0) {
+            (LobeSet::DELTA, _) | (_, false) => reflected,
+            _ => gain * f0.lerp(Rgb::WHITE, table.layer) * reflection.total,
+        };
+        (1.0 - taken.max_channel()).clamp(0.0, 1.0)
     }
 }
 

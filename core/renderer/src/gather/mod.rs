@@ -59,8 +59,6 @@ pub struct Gatherer<'a> {
     widest: f32,
     /// By material: albedo / π where all there is to know is a constant Lambert reflection.
     plain: Vec<Option<Rgb>>,
-    /// Lobes that are read from the pyramid.
-    read_lobes: LobeSet,
 }
 
 impl<'a> Gatherer<'a> {
@@ -96,7 +94,6 @@ impl<'a> Gatherer<'a> {
             direct_share: gather.camera_samples as f32 / gather.rays as f32,
             widest: widest_stratum(gather.rays),
             plain: plain.collect(),
-            read_lobes: LobeSet::DIFFUSE,
         }
     }
 

@@ -137,8 +137,8 @@ impl<'a> Gatherer<'a> {
                 rays.retraced += 1;
                 LobeSet::ALL
             } else {
-                radiance += throughput * self.look_up(&surface, footprint);
-                LobeSet::ALL.without(self.read_lobes)
+                radiance += throughput * self.look_up(&surface, footprint, rng);
+                LobeSet::SHARP | LobeSet::DELTA
             };
             if !surface.bsdf.has(lobes) {
                 break;
@@ -176,14 +176,22 @@ impl<'a> Gatherer<'a> {
     }
 
     /// Light of the surface's diffuse and glossy lobes, from the pyramid.
-    fn look_up(&self, surface: &Surface<'_>, footprint: Footprint) -> Rgb {
-        let albedo = surface.bsdf.diffuse_albedo();
-        if albedo.is_black() {
-            return Rgb::BLACK;
-        }
+    fn look_up(&self, surface: &Surface<'_>, footprint: Footprint, rng: &mut Rng) -> Rgb {
+        let bsdf = &surface.bsdf;
         let level = self.pyramid.level_for(footprint.solid_angle * footprint.travelled * footprint.travelled);
-        let class = self.pyramid.class(surface.bsdf.frame.ng);
-        albedo * self.pyramid.irradiance(surface.p, class, level) * std::f32::consts::FRAC_1_PI
+        let class = self.pyramid.class(bsdf.frame.ng);
+        let mut radiance = Rgb::BLACK;
+        if bsdf.has(LobeSet::DIFFUSE) {
+            let irradiance = self.pyramid.irradiance(surface.p, class, level);
+            radiance += bsdf.diffuse_albedo() * irradiance * std::f32::consts::FRAC_1_PI;
+        }
+        if bsdf.has(LobeSet::ROUGH) {
+            let material = self.lit.accel.material(surface.hit.object, surface.hit.primitive);
+            let tint = self.lit.materials[material].specular_tint();
+            let shift = [rng.next() - 0.5, rng.next() - 0.5];
+            radiance += tint * self.pyramid.glossy_radiance(surface.p, class, level, bsdf.wo(), shift);
+        }
+        radiance
     }
 
     /// True where a look-up would read a cell that the ray's start may lie in, or where a mirror-like ray would see cells.

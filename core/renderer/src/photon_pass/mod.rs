@@ -13,9 +13,9 @@ use crate::accel::{Hit, Ray};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::error::RenderError;
-use crate::lit_scene::{LitScene, lobes_lit, ray_kind};
+use crate::lit_scene::{LitScene, Surface, lobes_lit, ray_kind};
 use crate::progress::Progress;
-use crate::pyramid::Accumulator;
+use crate::pyramid::{Accumulator, Landing};
 use crate::sampling::PhotonSampler;
 use crate::scene::visibility;
 use crate::settings::PhotonPassSettings;
@@ -126,7 +126,12 @@ impl Tracer<'_> {
             let bsdf = &surface.bsdf;
             if bsdf.has(lobes_read(lobes)) {
                 let stored = flux * bsdf.frame.irradiance_factor(-ray.direction);
-                self.accumulator.deposit(surface.p, bsdf.frame.ng, stored);
+                let landing = self.accumulator.deposit(surface.p, bsdf.frame.ng, stored);
+                if let Some(landing) =
+                    landing.filter(|_| bsdf.has(lobes_read(lobes).without(LobeSet::DIFFUSE)))
+                {
+                    self.deposit_glossy(landing, &surface, stored, [sampler.next(), sampler.next()]);
+                }
             }
             let u_lobe = sampler.next();
             let u = [sampler.next(), sampler.next()];
@@ -149,6 +154,15 @@ impl Tracer<'_> {
             }
         }
         segments
+    }
+
+    fn deposit_glossy(&self, landing: Landing, surface: &Surface<'_>, flux: Rgb, at: [f32; 2]) {
+        let material = self.lit.accel.material(surface.hit.object, surface.hit.primitive);
+        let tint = self.lit.materials[material].specular_tint();
+        let tinted = Rgb([0, 1, 2].map(|c| flux.0[c] / tint.0[c]));
+        self.accumulator.deposit_glossy(landing, at, |direction| {
+            surface.bsdf.eval(direction, LobeSet::ROUGH, TransportMode::Radiance) * tinted
+        });
     }
 
     fn next_direction(

@@ -1,12 +1,16 @@
 //! From sums to a pyramid that can be read: levels merged octree-wise, sparse cells given their parent's value.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
-use super::accumulator::{Accumulator, CellSum};
+use super::accumulator::{Accumulator, CellSum, Sums};
+use super::bins::BinStore;
 use super::index::{CellKey, LevelIndex};
-use super::layout::{Layout, LevelLayout};
+use super::layout::Layout;
 use super::{Cell, Level, Pyramid};
 use crate::color::Rgb;
+use crate::math::Frame;
 
 /// A cell with less surface than this part of its face is read from its parent: a single photon there would be a spark.
 const SLIVER: f64 = 0.1;
@@ -16,64 +20,91 @@ impl Pyramid {
     /// `4 × photons_per_cell` photons (a rule on the cell's own count would brighten the picture), and slivers.
     #[must_use]
     pub fn build(accumulator: Accumulator<'_>, layout: &Layout, photons_per_cell: u32) -> Self {
-        let (mut sums, quantum) = accumulator.into_sums();
+        let mut sums = accumulator.into_sums();
         merge(layout, &mut sums);
         let enough = 4 * u64::from(photons_per_cell);
-        let mut levels: Vec<Level> = Vec::with_capacity(sums.len());
-        for (number, cells) in layout.levels.iter().enumerate() {
-            let parents = levels.last();
-            let values = (0..cells.keys.len()).into_par_iter().map(|place| {
-                let own = Cell::new(
-                    irradiance(layout, cells, &sums[number], place, quantum),
-                    sums[number][place].count >= enough,
-                );
-                let (Some(parents), true) = (parents, number > 0) else { return own };
-                let (cell, class) = cells.keys[place].cell(&layout.grid.levels[number]);
-                let Some(parent) = layout.grid.parent(number, cell).and_then(|c| parents.find(c, class))
-                else {
-                    return own;
-                };
-                let face = f64::from(layout.grid.levels[number].cell_size).powi(2);
-                let sliver = (cells.surfaces[place].area as f64 * layout.area_unit) < SLIVER * face;
-                if parent.holds_enough() && !sliver {
-                    own
-                } else {
-                    Cell::new(parent.irradiance(), own.holds_enough())
-                }
-            });
-            let values: Vec<Cell> = values.collect();
-            levels.push(keep_lit(layout, number, cells, &sums[number], &values));
+        let mut store = BinStore::new(sums.bins);
+        let mut levels: Vec<Level> = Vec::with_capacity(layout.levels.len());
+        for number in 0..layout.levels.len() {
+            let glossy = push_bins(layout, number, &sums, &mut store);
+            let settle = |place: usize| settle(layout, number, place, &sums, enough, &glossy, levels.last());
+            let values: Vec<Cell> =
+                (0..layout.levels[number].keys.len()).into_par_iter().map(settle).collect();
+            levels.push(keep_lit(layout, number, &sums.cells[number], &values));
         }
-        Self { grid: layout.grid.clone(), classes: layout.classes, levels }
+        Self { grid: layout.grid.clone(), classes: layout.classes, levels, store }
     }
 }
 
+/// A cell as it will be read: its own values, or its parent's.
+fn settle(
+    layout: &Layout,
+    number: usize,
+    place: usize,
+    sums: &Sums,
+    enough: u64,
+    glossy: &BTreeMap<usize, u32>,
+    parents: Option<&Level>,
+) -> Cell {
+    let cells = &layout.levels[number];
+    let sum = &sums.cells[number][place];
+    let area = cells.surfaces[place].area as f64 * layout.area_unit;
+    let irradiance = Rgb(sum.flux.map(|flux| (flux as f64 * sums.quantum / area) as f32));
+    let own = Cell::new(irradiance, glossy.get(&place).copied(), sum.count >= enough);
+    let (cell, class) = cells.keys[place].cell(&layout.grid.levels[number]);
+    let parent = parents.and_then(|parents| parents.find(layout.grid.parent(number, cell)?, class));
+    let face = f64::from(layout.grid.levels[number].cell_size).powi(2);
+    match parent {
+        Some(parent) if !parent.holds_enough() || area < SLIVER * face => {
+            Cell::new(parent.irradiance(), parent.glossy(), own.holds_enough())
+        }
+        _ => own,
+    }
+}
+
+/// Puts the bins of a level's glossy cells into the store; gives their numbers by place.
+fn push_bins(layout: &Layout, number: usize, sums: &Sums, store: &mut BinStore) -> BTreeMap<usize, u32> {
+    let surfaces = &layout.levels[number].surfaces;
+    let cells = sums.glossy.get(number).into_iter().flatten();
+    cells
+        .map(|(&place, bins)| {
+            let area = surfaces[place].glossy_area.max(1) as f64 * layout.area_unit;
+            (place, store.push(surfaces[place].mean_normal(), bins, sums.quantum / area))
+        })
+        .collect()
+}
+
 /// Adds every cell to its parent, from the finest level up.
-fn merge(layout: &Layout, sums: &mut [Vec<CellSum>]) {
-    for level in (1..sums.len()).rev() {
-        let (coarser, finer) = sums.split_at_mut(level);
-        for (key, sum) in layout.levels[level].keys.iter().zip(&finer[0]).filter(|(_, sum)| sum.count > 0) {
-            let (cell, class) = key.cell(&layout.grid.levels[level]);
-            let parent = layout.grid.parent(level, cell);
-            if let Some(place) = parent.and_then(|c| layout.levels[level - 1].index.find(c, class)) {
-                coarser[level - 1][place].add(sum);
+fn merge(layout: &Layout, sums: &mut Sums) {
+    for level in (1..layout.levels.len()).rev() {
+        let place_of_parent = |place: usize| {
+            let (cell, class) = layout.levels[level].keys[place].cell(&layout.grid.levels[level]);
+            layout.levels[level - 1].index.find(layout.grid.parent(level, cell)?, class)
+        };
+        let (coarser, finer) = sums.cells.split_at_mut(level);
+        for (place, sum) in finer[0].iter().enumerate().filter(|(_, sum)| sum.count > 0) {
+            if let Some(parent) = place_of_parent(place) {
+                coarser[level - 1][parent].add(sum);
+            }
+        }
+        let frame =
+            |level: usize, place: usize| Frame::new(layout.levels[level].surfaces[place].mean_normal());
+        let (coarser, finer) = sums.glossy.split_at_mut(level);
+        for (&place, values) in &finer[0] {
+            if let Some(parent) = place_of_parent(place) {
+                let empty = || vec![[0; 3]; sums.bins.count()];
+                let total = coarser[level - 1].entry(parent).or_insert_with(empty);
+                sums.bins.add(&frame(level, place), values, &frame(level - 1, parent), total);
             }
         }
     }
 }
 
-#[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "f32 is what is read")]
-fn irradiance(layout: &Layout, cells: &LevelLayout, sums: &[CellSum], place: usize, quantum: f64) -> Rgb {
-    let area = cells.surfaces[place].area as f64 * layout.area_unit;
-    Rgb(sums[place].flux.map(|flux| (flux as f64 * quantum / area) as f32))
-}
-
 /// Cells without a photon need no memory: what is missing is dark where its parent holds enough photons to know, and
 /// else read from the parent.
-fn keep_lit(layout: &Layout, number: usize, cells: &LevelLayout, sums: &[CellSum], values: &[Cell]) -> Level {
-    let lit = |place: &usize| sums[*place].count > 0;
-    let places: Vec<usize> = (0..values.len()).filter(lit).collect();
-    let keys = places.iter().map(|&place| -> CellKey { cells.keys[place] });
+fn keep_lit(layout: &Layout, number: usize, sums: &[CellSum], values: &[Cell]) -> Level {
+    let places: Vec<usize> = (0..values.len()).filter(|&place| sums[place].count > 0).collect();
+    let keys = places.iter().map(|&place| -> CellKey { layout.levels[number].keys[place] });
     let index = LevelIndex::new(&layout.grid.levels[number], layout.classes.count(), keys);
     Level { index, cells: places.iter().map(|&place| values[place]).collect() }
 }

@@ -15,7 +15,7 @@ use super::index::{CellKey, LevelIndex};
 pub struct SurfaceTriangle {
     /// Corners in scene space.
     pub corners: [DVec3; 3],
-    /// True when its cells need direction bins.
+    /// True when the light leaving it is needed by direction.
     pub glossy: bool,
 }
 
@@ -26,8 +26,8 @@ pub struct CellSurface {
     pub area: i64,
     /// Area-weighted normal, in the same unit.
     pub normal: [i64; 3],
-    /// True when some of it needs direction bins.
-    pub glossy: bool,
+    /// Area of what needs direction bins.
+    pub glossy_area: i64,
 }
 
 impl CellSurface {
@@ -36,7 +36,7 @@ impl CellSurface {
         for c in 0..3 {
             self.normal[c] += other.normal[c];
         }
-        self.glossy |= other.glossy;
+        self.glossy_area += other.glossy_area;
     }
 
     /// Unit mean normal; the class's own axis would be wrong by up to 55°.
@@ -171,10 +171,11 @@ fn measure(
     clip_triangle(grid, triangle.corners, &mut |level, cell, area| {
         let units = area / area_unit;
         for (class, sign) in sides.into_iter().zip([1.0, -1.0]) {
+            let area = units.round() as i64;
             let surface = CellSurface {
-                area: units.round() as i64,
+                area,
                 normal: (normal * (sign * units)).to_array().map(|c| c.round() as i64),
-                glossy: triangle.glossy,
+                glossy_area: if triangle.glossy { area } else { 0 },
             };
             if surface.area > 0 {
                 let key = CellKey::new(&grid.levels[level], cell, class);
@@ -236,7 +237,7 @@ mod tests {
             let sum = sum as f64 * layout.area_unit;
             assert!((sum - exact).abs() < 1e-9 * exact, "level {level}: {sum} against {exact}");
         }
-        assert!(layout.levels[layout.grid.finest()].surfaces.iter().any(|s| s.glossy));
-        assert!(layout.levels[layout.grid.finest()].surfaces.iter().any(|s| !s.glossy));
+        assert!(layout.levels[layout.grid.finest()].surfaces.iter().any(|s| s.glossy_area > 0));
+        assert!(layout.levels[layout.grid.finest()].surfaces.iter().any(|s| s.glossy_area == 0));
     }
 }

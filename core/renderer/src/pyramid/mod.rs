@@ -16,6 +16,7 @@
 //! diffuse surfaces, true area instead of the cell's face, level chosen by the parent's photon count.
 
 mod accumulator;
+mod bins;
 mod build;
 mod class;
 mod clip;
@@ -25,34 +26,44 @@ mod layout;
 
 use glam::{IVec3, Vec3};
 
-pub use accumulator::Accumulator;
+pub use accumulator::{Accumulator, Landing};
+pub use bins::DirectionBins;
 pub use class::NormalClasses;
 pub use grid::Grid;
 pub use layout::{Layout, SurfaceTriangle};
 
 use crate::color::Rgb;
+use bins::BinStore;
 use index::LevelIndex;
 
-/// Irradiance of one cell and normal class.
+/// Light of one cell and normal class.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(16))]
 struct Cell {
     irradiance: [f32; 3],
-    /// Whether there are enough photons for the cell's children to be read.
-    enough: u32,
+    /// Lowest bit: whether there are enough photons for the cell's children to be read. Above it: one more than the number
+    /// of its direction bins, 0 where it has none.
+    rest: u32,
 }
 
 impl Cell {
-    fn new(irradiance: Rgb, enough: bool) -> Self {
-        Self { irradiance: irradiance.0, enough: u32::from(enough) }
+    fn new(irradiance: Rgb, glossy: Option<u32>, enough: bool) -> Self {
+        Self {
+            irradiance: irradiance.0,
+            rest: glossy.map_or(0, |number| (number + 1) << 1) | u32::from(enough),
+        }
     }
 
     const fn irradiance(&self) -> Rgb {
         Rgb(self.irradiance)
     }
 
+    const fn glossy(&self) -> Option<u32> {
+        (self.rest >> 1).checked_sub(1)
+    }
+
     const fn holds_enough(&self) -> bool {
-        self.enough != 0
+        self.rest & 1 != 0
     }
 }
 
@@ -74,6 +85,7 @@ pub struct Pyramid {
     grid: Grid,
     classes: NormalClasses,
     levels: Vec<Level>,
+    store: BinStore,
 }
 
 impl Pyramid {
@@ -92,7 +104,17 @@ impl Pyramid {
     /// Memory (bytes).
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.levels.iter().map(|level| level.index.bytes() + level.cells.len() * size_of::<Cell>()).sum()
+        self.levels
+            .iter()
+            .map(|level| level.index.bytes() + level.cells.len() * size_of::<Cell>())
+            .sum::<usize>()
+            + self.store.bytes()
+    }
+
+    /// Cells with direction bins, all levels.
+    #[must_use]
+    pub const fn glossy_cell_count(&self) -> usize {
+        self.store.len()
     }
 
     /// Edge of a finest cell (scene units).
@@ -144,18 +166,37 @@ impl Pyramid {
     #[must_use]
     #[inline]
     pub fn irradiance(&self, p: Vec3, class: usize, level: usize) -> Rgb {
-        let located = self.grid.locate(self.grid.offset(p), level);
-        let Some((mut level, mut cell)) = located else { return Rgb::BLACK };
+        self.find(p, class, level).map_or(Rgb::BLACK, Cell::irradiance)
+    }
+
+    /// Radiance (W·m⁻²·sr⁻¹) of the glossy surfaces of class `class` at `p` towards the unit vector `direction`, divided by
+    /// their tint; `shift` in [-½, ½]² as in [`DirectionBins::bin`].
+    #[must_use]
+    pub fn glossy_radiance(
+        &self,
+        p: Vec3,
+        class: usize,
+        level: usize,
+        direction: Vec3,
+        shift: [f32; 2],
+    ) -> Rgb {
+        let glossy = self.find(p, class, level).and_then(Cell::glossy);
+        glossy.map_or(Rgb::BLACK, |number| self.store.radiance(number, direction, shift))
+    }
+
+    /// The cell to read; `None` where it is dark.
+    #[inline]
+    fn find(&self, p: Vec3, class: usize, level: usize) -> Option<&Cell> {
+        let (mut level, mut cell) = self.grid.locate(self.grid.offset(p), level)?;
         if let Some(found) = self.levels[level].find(cell, class) {
-            return found.irradiance();
+            return Some(found);
         }
         while level > 0 {
-            let Some(parent) = self.grid.parent(level, cell) else { break };
-            (level, cell) = (level - 1, parent);
+            (cell, level) = (self.grid.parent(level, cell)?, level - 1);
             if let Some(found) = self.levels[level].find(cell, class) {
-                return if found.holds_enough() { Rgb::BLACK } else { found.irradiance() };
+                return (!found.holds_enough()).then_some(found);
             }
         }
-        Rgb::BLACK
+        None
     }
 }
