@@ -39,7 +39,7 @@ class RGPPyramidSettings(bpy.types.PropertyGroup):
     )
     normal_classes: bpy.props.EnumProperty(
         name="Normal Classes",
-        description="Directions that keep surfaces in one cell apart: the six faces of a cube, or four parts of each",
+        description="Directions that keep surfaces in one cell apart: the six faces of a cube, or nine parts of each",
         items=(
             ("6", "6", "The six sides of a cube", 0),
             ("54", "54", "Nine for each side of a cube: less mixing on curved surfaces", 1),
