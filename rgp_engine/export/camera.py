@@ -6,6 +6,7 @@ import numpy as np
 
 from ..report import UserError
 from .context import ExportContext
+from .coordinates import matrix_array
 
 
 def camera_record(context: ExportContext) -> dict[str, Any]:
@@ -26,7 +27,7 @@ def camera_record(context: ExportContext) -> dict[str, Any]:
     return {
         "name": b_object.name,
         "projection": "orthographic" if is_orthographic else "perspective",
-        "world_from_camera": np.array(engine.camera_model_matrix(b_object)).reshape(4, 4).tolist(),
+        "world_from_camera": matrix_array(engine.camera_model_matrix(b_object)).tolist(),
         "window": camera_window(b_camera, resolution, aspect, shift),
         "resolution": list(resolution),
         "clip": [b_camera.clip_start, b_camera.clip_end],

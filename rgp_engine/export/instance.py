@@ -2,9 +2,8 @@
 
 from typing import Any
 
-import numpy as np
-
 from .context import ExportContext
+from .coordinates import matrix_array
 from .light import export_light
 from .material import material_index
 from .mesh import mesh_arrays
@@ -49,7 +48,7 @@ def _export_mesh(context: ExportContext, b_instance: Any) -> None:
     context.builder.add_object(
         b_object.name,
         mesh,
-        np.array(b_instance.matrix_world, np.float64),
+        matrix_array(b_instance.matrix_world),
         _materials(context, b_object),
         visibility,
     )

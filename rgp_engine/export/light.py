@@ -2,10 +2,9 @@
 
 from typing import Any
 
-import numpy as np
-
 from .arithmetic import WHITE, Color, multiply, scale
 from .context import ExportContext
+from .coordinates import matrix_array
 from .fold import Folder
 from .nodes import Input, Output, node_tree, origin, output_node
 from .visibility import instance_bits
@@ -27,7 +26,7 @@ def export_light(context: ExportContext, b_instance: Any) -> None:
             "name": b_object.name,
             "shape": lamp_shape(b_light),
             "power": list(power),
-            "world_from_lamp": np.array(b_instance.matrix_world, np.float64).tolist(),
+            "world_from_lamp": matrix_array(b_instance.matrix_world).tolist(),
             "visibility": instance_bits(context, b_instance),
             "casts_shadow": b_light.use_shadow,
         }

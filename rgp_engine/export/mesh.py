@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .coordinates import mark_infinite
+
 
 @dataclass
 class MeshArrays:
@@ -40,7 +42,7 @@ def mesh_arrays(b_mesh: Any) -> MeshArrays | None:
     attributes[".corner_vert"].data.foreach_get("value", corner_vertices)
     corners = _elements(b_mesh.loop_triangles, "loops", np.int32)
     return MeshArrays(
-        positions,
+        mark_infinite(positions),
         corner_vertices[corners].astype(np.uint32),
         _corner_normals(b_mesh, corners),
         _corner_uvs(b_mesh, corners),

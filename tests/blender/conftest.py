@@ -1,9 +1,11 @@
 """What the Blender tests share: an empty scene, the export recorded, renders."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import bpy
+import numpy as np
 import pytest
 
 import rgp_engine
@@ -19,7 +21,7 @@ def _engine() -> None:
 
 
 @pytest.fixture
-def scene() -> Iterator[Any]:
+def scene() -> Any:
     """An empty scene of 32 x 24 pixels, rendered by RGP Engine at the lowest quality."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     b_scene = bpy.context.scene
@@ -30,7 +32,7 @@ def scene() -> Iterator[Any]:
     b_scene.rgp.gather.rays = 4
     b_scene.rgp.gather.camera_samples = 1
     b_scene.rgp.gather.light_samples = 1
-    yield b_scene
+    return b_scene
 
 
 @pytest.fixture
@@ -72,3 +74,28 @@ def problems(outcome: Callable[[], Outcome]) -> Callable[[], list[str]]:
         return [f"{problem.subject}: {problem.message}" for problem in outcome().problems]
 
     return get
+
+
+@pytest.fixture
+def rendered(scene: Any, tmp_path: Path) -> Callable[[], Any]:
+    """Renders the scene and returns the picture: rows from the bottom, (height, width, 4)."""
+
+    def run() -> Any:
+        path = tmp_path / "picture.exr"
+        scene.render.image_settings.file_format = "OPEN_EXR"
+        scene.render.image_settings.color_mode = "RGBA"
+        scene.render.image_settings.color_depth = "32"
+        scene.render.filepath = str(path)
+        bpy.ops.render.render(write_still=True)
+        return _picture_of(path)
+
+    return run
+
+
+def _picture_of(path: Path) -> Any:
+    b_image = bpy.data.images.load(str(path))
+    width, height = b_image.size
+    pixels = np.empty(width * height * 4, np.float32)
+    b_image.pixels.foreach_get(pixels)
+    bpy.data.images.remove(b_image)
+    return pixels.reshape(height, width, 4)

@@ -1,8 +1,9 @@
 """Whatever fails, at whatever stage: Blender lives, and the failure is one readable line.
 
-Each case runs in a process of its own, since a missing render result makes Blender crash when it writes the picture.
+The renders run in a process of their own, since a missing render result makes Blender crash when it writes the picture.
 """
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -12,91 +13,109 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 SCRIPT = """
-import os, sys
+import json, os, sys
+from pathlib import Path
 import bpy
 import rgp_engine
 from rgp_engine import engine, native, session, stats
-from rgp_engine.export import camera, instance, light, material, mesh, world
 from tests.blender import build
 from tests.blender.recording_core import Core
 
-rgp_engine.register()
-bpy.ops.wm.read_factory_settings(use_empty=True)
-scene = bpy.context.scene
-scene.render.engine = "RGP"
-scene.render.resolution_x = scene.render.resolution_y = 16
-scene.render.filepath = sys.argv[1]
-build.lit_room()
-native.core = lambda: Core
-Core.seconds = 0.6
-
-def broken(*args, **kwargs):
-    raise ValueError("injected")
-
 class Watched:
-    broken = set()
+    broken = ""
 
     def __init__(self, b_engine):
         self.b_engine = b_engine
 
     def __getattr__(self, name):
-        return broken if name in self.broken else getattr(self.b_engine, name)
+        return broken if name == self.broken else getattr(self.b_engine, name)
 
+def broken(*args, **kwargs):
+    raise ValueError("injected")
+
+def render(picture):
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.render.engine = "RGP"
+    scene.render.resolution_x = scene.render.resolution_y = 16
+    scene.render.filepath = str(picture)
+    build.lit_room()
+    try:
+        bpy.ops.render.render(write_still=True)
+        return "finished"
+    except RuntimeError as error:
+        return str(error).strip()
+
+rgp_engine.register()
 engine.RenderSession = lambda b_engine, b_depsgraph: session.RenderSession(Watched(b_engine), b_depsgraph)
-
-{inject}
-try:
-    bpy.ops.render.render(write_still=True)
-    print("RESULT finished")
-except RuntimeError as error:
-    print("RESULT", str(error).strip())
-sys.stdout.flush()
+native.core = lambda: Core
+Core.seconds = 0.6
+names = {"Core": Core, "Watched": Watched, "session": session, "stats": stats}
+for place in sys.argv[2:]:
+    print("BEGIN", place, flush=True)
+    *path, name = place.split(".")
+    if path == ["engine"]:
+        owner, name, value = Watched, "broken", name
+    else:
+        owner, value = names[path[0]], broken
+        for part in path[1:]:
+            owner = getattr(owner, part)
+    original = getattr(owner, name)
+    setattr(owner, name, value)
+    picture = Path(sys.argv[1]) / "picture.png"
+    result = render(picture)
+    setattr(owner, name, original)
+    print("RESULT", json.dumps([place, result, picture.exists()]), flush=True)
+assert render(picture) == "finished" and picture.exists()
 os._exit(0)
 """
 
 PLACES = [
-    "session.export_scene = broken",
-    "session.core_settings = broken",
-    "session.native.embree_library = broken",
-    "session._write_pass = broken",
-    "session._write_passes = broken",
-    "stats.complete = broken",
-    "Core.SceneBuilder = broken",
-    "Core.Session = broken",
-    "Core.SceneBuilder.finish = broken",
-    "Core.SceneBuilder.add_mesh = broken",
-    "Core.SceneBuilder.add_lamp = broken",
-    "Core.SceneBuilder.add_material = broken",
-    "Core.SceneBuilder.set_world = broken",
-    "Core.SceneBuilder.set_camera = broken",
-    "Core.Session.start = broken",
-    "Core.Session.wait = broken",
-    "Core.Session.progress = broken",
-    "Core.Session.picture = broken",
-    "Core.Session.finish = broken",
-    "Core.Session.stats = broken",
-    "Watched.broken = {'begin_result'}",
-    "Watched.broken = {'test_break'}",
-    "Watched.broken = {'update_stats'}",
-    "Watched.broken = {'update_progress'}",
-    "Watched.broken = {'update_memory_stats'}",
-    "Watched.broken = {'update_result'}",
+    "session.export_scene",
+    "session.core_settings",
+    "session.native.embree_library",
+    "session._write_pass",
+    "session._write_passes",
+    "stats.complete",
+    "Core.SceneBuilder",
+    "Core.Session",
+    "Core.SceneBuilder.finish",
+    "Core.SceneBuilder.add_mesh",
+    "Core.SceneBuilder.add_lamp",
+    "Core.SceneBuilder.add_material",
+    "Core.SceneBuilder.set_world",
+    "Core.SceneBuilder.set_camera",
+    "Core.Session.start",
+    "Core.Session.wait",
+    "Core.Session.progress",
+    "Core.Session.picture",
+    "Core.Session.finish",
+    "Core.Session.stats",
+    "engine.begin_result",
+    "engine.test_break",
+    "engine.update_stats",
+    "engine.update_progress",
+    "engine.update_memory_stats",
+    "engine.update_result",
 ]
 
 
-@pytest.mark.parametrize("inject", PLACES)
-def test_blender_survives(tmp_path, inject):
-    picture = tmp_path / "picture.png"
-    script = tmp_path / "script.py"
-    script.write_text(SCRIPT.replace("{inject}", inject))
-    command = [
-        sys.executable,
-        "-c",
-        f"import sys; sys.path.insert(0, '.'); exec(open({str(script)!r}).read())",
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """What came of a render with each place broken: message, and whether a picture was written."""
+    folder = tmp_path_factory.mktemp("failures")
+    command = [sys.executable, "-c", SCRIPT, str(folder), *PLACES]
+    process = subprocess.run(command, cwd=ROOT, check=False, capture_output=True, text=True)
+    assert process.returncode == 0, process.stdout[-500:] + process.stderr[-2000:]
+    assert process.stderr.count("Traceback") == len(PLACES), "each failure is told in full on the console"
+    lines = [
+        line.removeprefix("RESULT ") for line in process.stdout.splitlines() if line.startswith("RESULT")
     ]
-    result = subprocess.run([*command, str(picture)], cwd=ROOT, check=False, capture_output=True, text=True)
-    assert result.returncode == 0, result.stdout[-500:] + result.stderr[-2000:]
-    (line,) = [line for line in result.stdout.splitlines() if line.startswith("RESULT")]
-    assert "Internal error, details in the console. ValueError: injected" in line
-    assert "Traceback" in result.stderr
-    assert not picture.exists()
+    return {place: (message, is_written) for place, message, is_written in map(json.loads, lines)}
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_blender_survives_and_says_why(results, place):
+    message, is_written = results[place]
+    assert message == "Error: Internal error, details in the console. ValueError: injected"
+    assert not is_written

@@ -63,11 +63,11 @@ def stop_after(replaced, count):
     """Esc at the given number of questions."""
     asked = []
 
-    def test_break(_original):
+    def is_pressed(_original):
         asked.append(time.monotonic())
         return len(asked) >= count
 
-    replaced["test_break"] = test_break
+    replaced["test_break"] = is_pressed
     return asked
 
 
@@ -193,7 +193,7 @@ def test_a_bug_is_one_readable_error_with_a_traceback_on_the_console(scene, monk
     failing(monkeypatch, ZeroDivisionError("by zero"))
     build.lit_room()
     with pytest.raises(
-        RuntimeError, match="Internal error, details in the console. ZeroDivisionError: by zero"
+        RuntimeError, match=r"Internal error, details in the console\. ZeroDivisionError: by zero"
     ):
         bpy.ops.render.render()
     assert "Traceback" in capfd.readouterr().err

@@ -37,7 +37,7 @@ impl Glass {
             let rise = fresnel::dielectric_rise(cos, eta);
             (rise * total, 1.0 - rise, Rgb::WHITE)
         } else {
-            let table = energy_table::dielectric(roughness, cos, eta);
+            let table = energy_table::dielectric(roughness, cos, eta, total);
             let plain = fresnel::f0_from_ior(eta);
             let refracted = (1.0 - plain) * (table.through + table.stray);
             let scaled = plain * (total - table.rise) + table.rise + refracted;
@@ -78,7 +78,8 @@ pub(super) fn push_refraction(
     let refracted = if class == LobeSet::DELTA {
         f32::from(u8::from(fresnel::cos_refracted(cos, eta).is_some()))
     } else {
-        energy_table::dielectric(rough.roughness, cos, eta).refracted
+        let total = energy_table::reflection(rough.roughness, cos).total;
+        energy_table::dielectric(rough.roughness, cos, eta, total).refracted
     };
     lobes.push(Lobe {
         shape: Shape::Transmission { alpha: rough.alpha, eta },

@@ -16,12 +16,8 @@ use glam::Vec3;
 use super::{fresnel, ggx};
 use crate::color::Rgb;
 
-/// Nodes along Blender's roughness, uniform.
-const ROUGHNESS_NODES: usize = 32;
-/// Nodes along the square root of the cosine, uniform: dense at grazing, where albedos bend.
-const COS_NODES: usize = 32;
-/// Nodes along the fourth root of F0, uniform: indices from 1 to infinity, dense between 1 and 2.
-const INDEX_NODES: usize = 16;
+/// Nodes of the index of refraction, uniform along the fourth root of F0: from 1 to infinity, dense between 1 and 2.
+const INDEX_NODES: usize = 31;
 /// Points of the lattice (a Fibonacci number) and its generator (the one before).
 const POINTS: usize = 377;
 const GENERATOR: usize = 233;
@@ -60,30 +56,27 @@ pub(super) struct Dielectric {
 
 /// Reflection albedos at Blender's roughness and the cosine of the direction.
 pub(super) fn reflection(roughness: f32, cos: f32) -> Reflection {
-    let [total, schlick, dent] = REFLECTION.albedos.at(roughness, cos);
-    Reflection { total, mean: interpolate(&REFLECTION.means, roughness), schlick, dent }
+    let [total] = TOTAL.at(roughness, cos);
+    let [schlick, dent] = METAL.at(roughness, cos);
+    Reflection { total, mean: TOTAL.mean(roughness), schlick: schlick * total, dent: dent * total }
 }
 
-/// Dielectric albedos; `eta` is the index beyond the interface over the one on the side the light comes from and leaves to.
-pub(super) fn dielectric(roughness: f32, cos: f32, eta: f32) -> Dielectric {
+/// Dielectric albedos; `eta` is the index beyond the interface over the one on the side the light comes from and leaves to,
+/// `total` that of [`Reflection`] for the same roughness and cosine.
+pub(super) fn dielectric(roughness: f32, cos: f32, eta: f32, total: f32) -> Dielectric {
     let (low, high, t) = index_position(eta);
-    let (low, high) = (slice(low), slice(high));
+    let (low, high) = (slice(low, eta < 1.0), slice(high, eta < 1.0));
     let mix = |a: f32, b: f32| a + (b - a) * t;
-    let side = usize::from(eta < 1.0);
-    let a = low.sides[side].albedos.at(roughness, cos);
-    let b = high.sides[side].albedos.at(roughness, cos);
-    let last = mix(a[3], b[3]);
-    let (layer, stray) = if side == 0 { (last, 0.0) } else { (0.0, last) };
+    let (a, b) = (low.at(roughness, cos), high.at(roughness, cos));
+    let [rise, through, refracted, last] = std::array::from_fn(|k| mix(a[k], b[k]));
+    let (layer, stray) = if eta < 1.0 { (0.0, last) } else { (last, 0.0) };
     Dielectric {
-        rise: mix(a[0], b[0]),
-        through: mix(a[1], b[1]),
-        refracted: mix(a[2], b[2]),
+        rise: rise * total,
+        through: through * total,
+        refracted: refracted * total,
         layer,
-        stray,
-        mean: mix(
-            interpolate(&low.sides[side].means, roughness),
-            interpolate(&high.sides[side].means, roughness),
-        ),
+        stray: stray * total,
+        mean: mix(low.mean(roughness), high.mean(roughness)),
     }
 }
 
@@ -94,24 +87,54 @@ pub(super) fn compensation(total: f32, mean: f32, fss: Rgb) -> Rgb {
     fss.map(|f| 1.0 + f * mean / (1.0 - f * (1.0 - mean)).max(1e-4) * missing)
 }
 
-/// Makes the slices around `eta` now, so that no ray has to.
+/// Makes the slices around `eta` now, from both sides, so that no ray has to.
 pub(super) fn prepare(eta: f32) {
     let (low, high, _) = index_position(eta);
-    LazyLock::force(&REFLECTION);
-    slice(low);
-    slice(high);
+    for inside in [false, true] {
+        slice(low, inside);
+        slice(high, inside);
+    }
 }
 
-/// K albedos at every node of roughness and cosine.
-struct Grid<const K: usize>(Vec<[f32; K]>);
+/// K values at nodes uniform in roughness and in √cos (dense at grazing, where albedos bend), and one mean over cosines per
+/// roughness.
+struct Table<const K: usize> {
+    rows: usize,
+    columns: usize,
+    values: Vec<[f32; K]>,
+    means: Vec<f32>,
+}
 
-impl<const K: usize> Grid<K> {
+impl<const K: usize> Table<K> {
+    /// `value` takes alpha and cosine; `mean_of` takes roughness, cosine and the value, and is averaged.
+    fn new(
+        [rows, columns]: [usize; 2],
+        value: impl Fn(f32, f32) -> [f32; K],
+        mean_of: impl Fn(f32, f32, &[f32; K]) -> f32,
+    ) -> Self {
+        let node = |k: usize, nodes: usize| k as f32 / (nodes - 1) as f32;
+        let cosines: Vec<f32> = (0..columns).map(|k| node(k, columns).powi(2).max(1e-4)).collect();
+        let (mut values, mut means) = (Vec::with_capacity(rows * columns), Vec::with_capacity(rows));
+        for roughness in (0..rows).map(|k| node(k, rows)) {
+            let row: Vec<_> = cosines.iter().map(|&cos| value(roughness * roughness, cos)).collect();
+            let averaged = cosines.iter().zip(&row).map(|(&cos, value)| mean_of(roughness, cos, value));
+            means.push(mean_over_cosines(&averaged.collect::<Vec<f32>>()));
+            values.extend(row);
+        }
+        Self { rows, columns, values, means }
+    }
+
+    fn mean(&self, roughness: f32) -> f32 {
+        let (row, t) = roughness_position(roughness, self.rows);
+        self.means[row] + (self.means[row + 1] - self.means[row]) * t
+    }
+
     fn at(&self, roughness: f32, cos: f32) -> [f32; K] {
-        let (row, s) = position(roughness, ROUGHNESS_NODES);
-        let (column, t) = position(cos.max(0.0).sqrt(), COS_NODES);
-        let at = row * COS_NODES + column;
-        let (a, b) = (&self.0[at], &self.0[at + 1]);
-        let (c, d) = (&self.0[at + COS_NODES], &self.0[at + COS_NODES + 1]);
+        let (row, s) = roughness_position(roughness, self.rows);
+        let (column, t) = position(cos.max(0.0).sqrt(), self.columns);
+        let at = row * self.columns + column;
+        let (a, b) = (&self.values[at], &self.values[at + 1]);
+        let (c, d) = (&self.values[at + self.columns], &self.values[at + self.columns + 1]);
         std::array::from_fn(|k| {
             let low = a[k] + (b[k] - a[k]) * t;
             let high = c[k] + (d[k] - c[k]) * t;
@@ -120,82 +143,58 @@ impl<const K: usize> Grid<K> {
     }
 }
 
-/// Albedos by roughness and cosine, and the mean over cosines of what is scaled to 1, by roughness.
-struct Table<const K: usize> {
-    albedos: Grid<K>,
-    means: Vec<f32>,
-}
-
-impl<const K: usize> Table<K> {
-    fn new(albedos: impl Fn(f32, f32) -> [f32; K], scaled: impl Fn(f32, f32, &[f32; K]) -> f32) -> Self {
-        let node = |k: usize, nodes: usize| k as f32 / (nodes - 1) as f32;
-        let roughnesses = (0..ROUGHNESS_NODES).map(|k| node(k, ROUGHNESS_NODES));
-        let cosines: Vec<f32> = (0..COS_NODES).map(|k| node(k, COS_NODES).powi(2).max(1e-4)).collect();
-        let mut grid = Vec::with_capacity(ROUGHNESS_NODES * COS_NODES);
-        let mut means = Vec::with_capacity(ROUGHNESS_NODES);
-        for roughness in roughnesses {
-            let row: Vec<[f32; K]> = cosines.iter().map(|&cos| albedos(roughness * roughness, cos)).collect();
-            let values: Vec<f32> =
-                cosines.iter().zip(&row).map(|(&cos, node)| scaled(roughness, cos, node)).collect();
-            means.push(mean_over_cosines(&values));
-            grid.extend(row);
-        }
-        Self { albedos: Grid(grid), means }
-    }
-}
-
-/// Both sides of the interface at one node of the index: from outside (index above 1), from inside.
-struct Slice {
-    sides: [Table<4>; 2],
-}
-
-static REFLECTION: LazyLock<Table<3>> = LazyLock::new(|| {
-    Table::new(
-        |alpha, cos| {
-            integrate(alpha, cos, |wo, h| {
-                let c = wo.dot(h).min(1.0);
-                let masking = reflection_masking(alpha, wo, h);
-                let schlick = masking * fresnel::schlick_rise(c);
-                [masking, schlick, schlick * c * (1.0 - c)]
-            })
-        },
-        |_, _, node| node[0],
-    )
+/// Single-scattering albedo of reflection. It falls off sharply where the cosine nears alpha; every other table holds
+/// ratios to it, which are smooth.
+static TOTAL: LazyLock<Table<1>> = LazyLock::new(|| {
+    let total = |alpha, cos| integrate(alpha, cos, |wo, h| [reflection_masking(alpha, wo, h)]);
+    Table::new([64, 48], total, |_, _, [total]| *total)
 });
 
-static SLICES: [OnceLock<Slice>; INDEX_NODES] = [const { OnceLock::new() }; INDEX_NODES];
+/// Means of a metal's (1 − cos)⁵ and cos (1 − cos)⁶ over what is reflected.
+static METAL: LazyLock<Table<2>> = LazyLock::new(|| {
+    let parts = |alpha, cos| {
+        let [total, schlick, dent] = integrate(alpha, cos, |wo, h| {
+            let c = wo.dot(h).min(1.0);
+            let masking = reflection_masking(alpha, wo, h);
+            let schlick = masking * fresnel::schlick_rise(c);
+            [masking, schlick, schlick * c * (1.0 - c)]
+        });
+        [schlick / total, dent / total]
+    };
+    Table::new([32, 32], parts, |_, _, _| 0.0)
+});
 
-fn slice(index: usize) -> &'static Slice {
-    SLICES[index].get_or_init(|| {
+/// [`Dielectric`] at one node of the index from one side: rise, through, refracted, and layer (from outside) or stray (from
+/// inside). All but `layer` are over [`TOTAL`].
+fn slice(index: usize, inside: bool) -> &'static Table<4> {
+    static SLICES: [[OnceLock<Table<4>>; INDEX_NODES]; 2] =
+        [const { [const { OnceLock::new() }; INDEX_NODES] }; 2];
+    SLICES[usize::from(inside)][index].get_or_init(|| {
         let z = (index as f32 / (INDEX_NODES - 1) as f32).clamp(0.01, 0.99);
         let ior = (1.0 + z * z) / (1.0 - z * z);
-        Slice { sides: [ior, 1.0 / ior].map(dielectric_table) }
+        dielectric_table(if inside { 1.0 / ior } else { ior })
     })
 }
 
 fn dielectric_table(eta: f32) -> Table<4> {
     let f0 = fresnel::f0_from_ior(eta);
-    Table::new(
-        |alpha, cos| {
-            integrate(alpha, cos, |wo, h| {
-                let rise = fresnel::dielectric_rise(wo.dot(h).min(1.0), eta);
-                let reflected = reflection_masking(alpha, wo, h);
-                let (refracted, stray) = refraction_masking(alpha, wo, h, eta);
-                // `layer` from outside, `stray` from inside.
-                let last = match (eta < 1.0, reflected > 0.0) {
-                    (true, _) => stray * (1.0 - rise),
-                    (false, true) => rise,
-                    (false, false) => 0.0,
-                };
-                [reflected * rise, refracted * (1.0 - rise), refracted, last]
-            })
-        },
-        |roughness, cos, [rise, through, _, last]| {
-            let total = reflection(roughness, cos).total;
-            let stray = if eta < 1.0 { *last } else { 0.0 };
-            f0 * (total - rise) + rise + (1.0 - f0) * (through + stray)
-        },
-    )
+    let parts = |alpha, cos| {
+        let [total, rise, through, refracted, stray, layer] = integrate(alpha, cos, |wo, h| {
+            let rise = fresnel::dielectric_rise(wo.dot(h).min(1.0), eta);
+            let reflected = reflection_masking(alpha, wo, h);
+            let (refracted, stray) = refraction_masking(alpha, wo, h, eta);
+            let layer = if reflected > 0.0 { rise } else { 0.0 };
+            let through = 1.0 - rise;
+            [reflected, reflected * rise, refracted * through, refracted, stray * through, layer]
+        });
+        let last = if eta < 1.0 { stray / total } else { layer };
+        [rise / total, through / total, refracted / total, last]
+    };
+    Table::new([32, 40], parts, |roughness, cos, [rise, through, _, last]| {
+        let stray = if eta < 1.0 { *last } else { 0.0 };
+        let ratio = f0 * (1.0 - rise) + rise + (1.0 - f0) * (through + stray);
+        ratio * TOTAL.at(roughness, cos)[0]
+    })
 }
 
 /// G2/G1 of the direction mirrored at `h`; 0 where it points below the surface.
@@ -268,6 +267,14 @@ fn position(x: f32, nodes: usize) -> (usize, f32) {
     let x = x.clamp(0.0, 1.0) * (nodes - 1) as f32;
     let at = (x as usize).min(nodes - 2);
     (at, x - at as f32)
+}
+
+/// Node below `roughness` and the way to the next, measured in alpha: near a mirror albedos change with alpha, so the nodes
+/// lie dense where it is small.
+fn roughness_position(roughness: f32, nodes: usize) -> (usize, f32) {
+    let (at, t) = position(roughness, nodes);
+    let low = at as f32;
+    (at, t * (2.0 * low + t) / (2.0 * low + 1.0))
 }
 
 /// Index nodes around `eta` (or its reciprocal, below 1) and the way between them.

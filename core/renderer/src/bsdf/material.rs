@@ -177,18 +177,16 @@ impl PreparedMaterial {
     #[inline]
     pub fn bsdf(&self, wo: Vec3, ng: Vec3, ns: Vec3) -> Bsdf<'_> {
         let frame = ShadingFrame::new(wo, ng, ns);
-        let mut lobes = ArrayVec::new();
-        let mut emission = self.bare_emission;
+        let cos = wo.dot(frame.ns).clamp(0.0, 1.0);
+        let (emission, transparency) = (self.bare_emission, self.transparency);
+        let mut bsdf = Bsdf { material: self, wo, lobes: ArrayVec::new(), emission, transparency, frame };
         if !self.lambert.is_black() {
-            lobes.push(Lobe::lambert(self.lambert, 0));
+            bsdf.lobes.push(Lobe::lambert(self.lambert, 0));
         }
-        if !self.closures.is_empty() {
-            let cos = wo.dot(frame.ns).clamp(0.0, 1.0);
-            for (slot, (weight, closure)) in (1..).step_by(principled::LOBES).zip(&self.closures) {
-                emission += closure.push(&mut lobes, *weight, frame.entering, cos, slot);
-            }
+        for (slot, (weight, closure)) in (1..).step_by(principled::LOBES).zip(&self.closures) {
+            bsdf.emission += closure.push(&mut bsdf.lobes, *weight, frame.entering, cos, slot);
         }
-        Bsdf { material: self, wo, lobes, emission, transparency: self.transparency, frame }
+        bsdf
     }
 }
 

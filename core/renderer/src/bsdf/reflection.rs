@@ -98,7 +98,7 @@ impl Layer {
     pub(super) fn push(self, lobes: &mut LobeList, weight: Rgb, share: f32, cos: f32, slot: u8) -> f32 {
         let Self { eta, f0, rough } = self;
         let reflection = energy_table::reflection(rough.roughness, cos);
-        let table = energy_table::dielectric(rough.roughness, cos, eta);
+        let table = energy_table::dielectric(rough.roughness, cos, eta, reflection.total);
         let rise = match rough.reflection_class() {
             LobeSet::DELTA => fresnel::dielectric_rise(cos, eta),
             _ => table.rise,

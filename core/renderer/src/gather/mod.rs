@@ -27,6 +27,7 @@ use crate::lit_scene::{LitScene, Surface, ray_kind};
 use crate::progress::Progress;
 use crate::pyramid::Pyramid;
 use crate::sampling::{FilterTable, Rng, StratifiedSet, hash};
+use crate::scene::visibility;
 use crate::settings::{GatherSampling, RenderSettings};
 use crate::stats::RayCounts;
 
@@ -182,13 +183,14 @@ pub fn seen_points(lit: &LitScene<'_>, seed: u32) -> Vec<Vec3> {
     points.collect()
 }
 
-/// The first surface along a ray that is not only mirror, glass or transparent.
+/// The first surface along a ray that is not only mirror, glass or transparent; lamps do not count.
 fn first_scatterer<'a>(
     lit: &'a LitScene<'a>,
     mut ray: Ray,
     max_depth: u32,
     rng: &mut Rng,
 ) -> Option<Surface<'a>> {
+    ray.mask &= !visibility::LAMP;
     for _ in 0..max_depth {
         let hit = lit.accel.intersect(&ray)?;
         let surface = lit.surface(&ray, hit);
