@@ -42,7 +42,8 @@ def test(options: argparse.Namespace) -> None:
         make_blender(bpy)
     failed = []
     embree = str(embree_library(f"bpy-{bpys[-1]}"))
-    if timed("cargo test", ["cargo", "test", "--workspace", "--locked"], CORE, RGP_EMBREE_LIBRARY=embree):
+    cargo = ["cargo", "test", "--workspace", "--locked", "--no-fail-fast"]
+    if timed("cargo test", cargo, CORE, RGP_EMBREE_LIBRARY=embree):
         failed.append("cargo test")
     for bpy in reversed(bpys):
         selection = ["tests"] if bpy == bpys[-1] else ["tests/blender", "tests/render", "-m", "not slow"]

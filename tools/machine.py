@@ -11,11 +11,11 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import NoReturn, Union
 
 ROOT = Path(__file__).resolve().parent.parent
 
-Command = Sequence[str | Path]
+Command = Sequence[Union[str, Path]]  # noqa: UP007  (Python 3.9 reads this line)
 
 # Each bpy wheel runs on exactly one Python; oldest Blender first.
 PYTHON_OF_BPY = {"4.2.23": "3.11", "4.5.15": "3.11", "5.0.1": "3.11", "5.2.3": "3.13"}
