@@ -101,8 +101,8 @@ def build_core() -> Path:
     built = list(WHEELS.glob(f"rgp_core-*+{fingerprint}-*.whl"))
     if built:
         return built[0]
-    tools = make_tools()
     check_compiler()
+    tools = make_tools()
     say("building the core")
     shutil.rmtree(WHEELS, ignore_errors=True)
     fresh = WHEELS / "fresh"
