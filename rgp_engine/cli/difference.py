@@ -57,7 +57,8 @@ def draw_difference(path: Path, picture: Picture, reference: Picture) -> None:
         _titled("A-B", _false_color(difference / scale)),
     ]
     strip = _beside(panels)
-    _write_png(path, np.concatenate([strip, _scale_bar(strip.shape[1], 100.0 * scale)]))
+    bar = _scale_bar(strip.shape[1], 100.0 * scale)
+    _write_png(path, np.concatenate([_widened(strip, bar.shape[1]), bar]))
 
 
 def _display(picture: Picture) -> Pixels:
@@ -90,11 +91,13 @@ def _text(text: str) -> Pixels:
 
 def _titled(title: str, picture: Pixels) -> Pixels:
     text = _text(title)
-    band = _blank(text.shape[0], max(picture.shape[1], text.shape[1]))
-    band[:, : text.shape[1]] = text
-    body = _blank(picture.shape[0], band.shape[1])
-    body[:, : picture.shape[1]] = picture
-    return np.concatenate([band, body])
+    width = max(picture.shape[1], text.shape[1])
+    return np.concatenate([_widened(text, width), _widened(picture, width)])
+
+
+def _widened(pixels: Pixels, width: int) -> Pixels:
+    """With background to the right."""
+    return np.concatenate([pixels, _blank(pixels.shape[0], width - pixels.shape[1])], axis=1)
 
 
 def _beside(panels: list[Pixels]) -> Pixels:

@@ -1,0 +1,151 @@
+"""Panels are drawn without error for every kind of thing. A layout that records stands in for the window."""
+
+from types import SimpleNamespace
+
+import bpy
+import pytest
+
+from rgp_engine import report, ui
+from rgp_engine.report import Outcome, Problem
+from rgp_engine.ui import light, material, problems, render, scene_parts
+from tests.blender import build
+
+
+class Layout:
+    """Takes every call of a Blender layout, and checks that properties exist."""
+
+    def __init__(self):
+        self.texts = []
+
+    def prop(self, b_data, name, text=None, **_):
+        assert name in b_data.bl_rna.properties, f"{b_data} has no {name}"
+        self.texts.append(text if text is not None else b_data.bl_rna.properties[name].name)
+
+    def label(self, text="", **_):
+        self.texts.append(text)
+
+    def operator(self, name, **_):
+        group, _, function = name.partition(".")
+        assert hasattr(getattr(bpy.ops, group), function)
+        return SimpleNamespace()
+
+    def menu(self, name, **_):
+        assert hasattr(bpy.types, name)
+
+    def template_list(self, name, *_, **__):
+        assert hasattr(bpy.types, name)
+
+    def template_ID(self, b_data, name, **_):  # noqa: N802 (Blender's)
+        assert b_data is None or name in b_data.bl_rna.properties
+
+    def template_node_view(self, _b_tree, b_node, b_socket):
+        assert b_socket.node == b_node
+        self.texts.append(f"nodes of {b_socket.name}")
+
+    def _part(self, *_, **__):
+        return self
+
+    row = column = split = box = _part
+
+
+def draw(cls, **context):
+    """Texts a panel shows in a context; None where it is not shown."""
+    # Blender's panels cannot be made by hand, so the functions are called on a plain object.
+    shown = SimpleNamespace(engine="RGP", **context)
+    panel = SimpleNamespace(layout=Layout())
+    poll = getattr(cls, "poll", None)
+    if poll is not None and not poll(shown):
+        return None
+    if hasattr(cls, "draw_header"):
+        cls.draw_header(panel, shown)
+    cls.draw(panel, shown)
+    return panel.layout.texts
+
+
+def test_every_setting_has_a_button(scene):
+    shown = [text for cls in render.CLASSES for text in draw(cls, scene=scene)]
+    for group in ("photon_pass", "pyramid", "gather", "film", "render"):
+        for b_property in getattr(scene.rgp, group).bl_rna.properties:
+            if b_property.identifier not in ("rna_type", "name", "bins"):
+                assert b_property.name in shown
+    assert {"Bins Elevation", "Azimuth", "Transparent"} <= set(shown)
+
+
+@pytest.mark.parametrize("kind", ["POINT", "SPOT", "SUN", "AREA"])
+def test_light_panels(scene, kind):
+    b_light = build.add_light(kind).data
+    shown = draw(light.RGP_PT_light, light=b_light)
+    assert "Power" in shown or "Strength" in shown
+    assert (draw(light.RGP_PT_light_beam, light=b_light) is not None) == (kind in ("SPOT", "AREA"))
+    build.connect(
+        build.shader_tree(b_light),
+        b_light.node_tree.nodes.new("ShaderNodeEmission"),
+        b_light.node_tree.nodes.new("ShaderNodeOutputLight"),
+        "Surface",
+    )
+    assert "nodes of Surface" in draw(light.RGP_PT_light_nodes, light=b_light)
+    assert draw(light.RGP_PT_light, light=None) is None
+
+
+def test_area_light_of_two_sizes(scene):
+    b_light = build.add_light("AREA", shape="RECTANGLE").data
+    assert "Size Y" in draw(light.RGP_PT_light, light=b_light)
+
+
+def test_material_panels(scene):
+    b_object = build.add_object("Quad", build.quad())
+    b_material = build.surface("ShaderNodeBsdfDiffuse")
+    b_object.data.materials.append(b_material)
+    b_object.data.materials.append(None)
+    context = {"object": b_object, "active_object": b_object, "material": b_material}
+    assert (
+        draw(material.RGP_PT_context_material, material_slot=b_object.material_slots[0], **context)
+        is not None
+    )
+    assert "nodes of Surface" in draw(material.RGP_PT_material_surface, **context)
+    b_material.node_tree.nodes.clear()
+    assert "No output node" in draw(material.RGP_PT_material_surface, **context)
+
+
+def test_world_object_and_view_layer_panels(scene):
+    b_world = bpy.data.worlds.new("World")
+    b_tree = build.shader_tree(b_world)
+    b_tree.nodes.new("ShaderNodeOutputWorld")
+    assert "nodes of Surface" in draw(scene_parts.RGP_PT_world_surface, world=b_world)
+    b_object = build.add_object("Quad", build.quad())
+    assert "Shadow" in draw(scene_parts.RGP_PT_object_visibility, object=b_object)
+    assert draw(scene_parts.RGP_PT_object_visibility, object=None) is None
+    assert draw(scene_parts.RGP_PT_view_layer_passes, view_layer=scene.view_layers[0]) == ["Indirect"]
+    assert draw(scene_parts.RGP_PT_view_layer_override, view_layer=scene.view_layers[0]) == [
+        "Material Override"
+    ]
+
+
+def test_problems_and_statistics(scene, monkeypatch):
+    monkeypatch.setattr(report, "_last", None)
+    assert draw(problems.RGP_PT_problems) == ["Nothing rendered yet"]
+    assert draw(problems.RGP_PT_statistics) == ["No statistics yet"]
+    report.publish(Outcome())
+    assert draw(problems.RGP_PT_problems) == ["None in the last render"]
+    many = [Problem(f"Cube{n}", "is bent", 1) for n in range(60)]
+    report.publish(Outcome([Problem("Lamp", "is odd", 3), *many], {"seconds": {"total": 2.0}}))
+    shown = draw(problems.RGP_PT_problems)
+    assert "Lamp: is odd (3 times)" in shown
+    assert shown[-1] == "and 11 more"
+    assert draw(problems.RGP_PT_statistics) == ["Total time", "2.00 s"]
+    report.publish(Outcome(error="There is no camera."))
+    assert "There is no camera." in draw(problems.RGP_PT_problems)
+
+
+def test_panels_are_hidden_for_other_engines(scene):
+    for module in (render, problems, light, material, scene_parts):
+        for cls in module.CLASSES:
+            assert not cls.poll(
+                SimpleNamespace(engine="CYCLES", light=True, material=True, world=True, object=None)
+            )
+
+
+def test_every_panel_is_registered():
+    classes = [cls for module in (render, problems, light, material, scene_parts) for cls in module.CLASSES]
+    assert all(cls.is_registered for cls in classes)
+    assert ui.register is not None
