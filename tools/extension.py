@@ -15,9 +15,9 @@ import tempfile
 import tomllib
 from pathlib import Path
 
+from tools.environment import VENVS
 from tools.machine import ROOT, fail, require, say
 
-DIST = ROOT / "dist"
 PLATFORMS = {
     ("Linux", "x86_64"): "linux-x64",
     ("Darwin", "arm64"): "macos-arm64",
@@ -34,15 +34,21 @@ def embreex_requirement(lock: str) -> str:
     return "\n".join(lines[first : last + 1]) + "\n"
 
 
-def download_embreex(python_version: str, folder: Path) -> Path:
-    """Downloads the pinned embreex wheel for that Python into the folder; the wheel."""
-    requirement = folder / "embreex.txt"
-    requirement.write_text(embreex_requirement((ROOT / "requirements/bpy-5.2.3.txt").read_text()))
-    pip = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
-    pip += ["--only-binary=:all:", "--require-hashes", "--python-version", python_version]
-    if subprocess.run([*pip, "--dest", folder, "-r", requirement], check=False).returncode != 0:
-        fail(f"there is no embreex wheel for Python {python_version}")
-    requirement.unlink()
+def download_embreex(python_version: str) -> Path:
+    """The pinned embreex wheel for that Python, downloaded unless an earlier build did."""
+    entry = embreex_requirement((ROOT / "requirements/bpy-5.2.3.txt").read_text())
+    folder = VENVS / f"embreex-python{python_version}"
+    lock = folder / "embreex.txt"
+    if not (lock.is_file() and lock.read_text() == entry):
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        wanted = folder / "wanted.txt"
+        wanted.write_text(entry)
+        pip = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
+        pip += ["--only-binary=:all:", "--require-hashes", "--python-version", python_version]
+        if subprocess.run([*pip, "--dest", folder, "-r", wanted], check=False).returncode != 0:
+            fail(f"the embreex wheel for Python {python_version} cannot be had")
+        wanted.rename(lock)
     return next(folder.glob("embreex-*.whl"))
 
 
@@ -61,18 +67,18 @@ def blender_packager() -> Path:
     return next(Path(spec.origin).parent.glob("*/scripts/addons_core/bl_pkg/cli/blender_ext.py"))
 
 
-def build(core_wheel: Path, python_version: str) -> Path:
-    """Builds and validates the zip for this machine's platform and that Python; the zip."""
+def build(core_wheel: Path, python_version: str, destination: Path) -> Path:
+    """Builds and validates the zip for this machine's platform and that Python in the folder `destination`; the zip."""
     machine = (platform.system(), platform.machine())
     if machine not in PLATFORMS:
         fail(f"no extension can be built on {' '.join(machine)}")
-    DIST.mkdir(exist_ok=True)
+    destination.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         stage = Path(folder)
         wheels = stage / "wheels"
         wheels.mkdir()
         shutil.copy(core_wheel, wheels)
-        download_embreex(python_version, wheels)
+        shutil.copy(download_embreex(python_version), wheels)
         for name in CONTENT:
             source = ROOT / name
             if source.is_dir():
@@ -84,7 +90,7 @@ def build(core_wheel: Path, python_version: str) -> Path:
         (stage / "blender_manifest.toml").write_text(manifest)
 
         version = tomllib.loads(manifest)["version"]
-        target = DIST / f"rgp_engine-{version}-{PLATFORMS[machine]}-python{python_version}.zip"
+        target = destination / f"rgp_engine-{version}-{PLATFORMS[machine]}-python{python_version}.zip"
         packager: list[str | Path] = [sys.executable, blender_packager()]
         require([*packager, "build", "--source-dir", stage, "--output-filepath", target])
         require([*packager, "validate", target])
@@ -92,4 +98,4 @@ def build(core_wheel: Path, python_version: str) -> Path:
 
 
 if __name__ == "__main__":
-    say(f"built {build(Path(sys.argv[1]), sys.argv[2]).relative_to(ROOT)}")
+    say(f"built {build(Path(sys.argv[1]), sys.argv[2], ROOT / 'dist').relative_to(ROOT)}")
