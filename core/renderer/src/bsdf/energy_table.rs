@@ -12,6 +12,7 @@ use std::f32::consts::PI;
 use std::sync::{LazyLock, OnceLock};
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 use super::{fresnel, ggx};
 use crate::color::Rgb;
@@ -19,8 +20,8 @@ use crate::color::Rgb;
 /// Nodes of the index of refraction, uniform along the fourth root of F0: from 1 to infinity, dense between 1 and 2.
 const INDEX_NODES: usize = 31;
 /// Points of the lattice (a Fibonacci number) and its generator (the one before).
-const POINTS: usize = 377;
-const GENERATOR: usize = 233;
+const POINTS: usize = 610;
+const GENERATOR: usize = 377;
 
 /// Albedos of GGX reflection with constant reflectance 1, and of the parts a metal's Fresnel curve is made of.
 #[derive(Clone, Copy, Debug)]
@@ -56,8 +57,9 @@ pub(super) struct Dielectric {
 
 /// Reflection albedos at Blender's roughness and the cosine of the direction.
 pub(super) fn reflection(roughness: f32, cos: f32) -> Reflection {
-    let [total] = TOTAL.at(roughness, cos);
-    let [schlick, dent] = METAL.at(roughness, cos);
+    let t = axis(cos, 0.0);
+    let [total] = TOTAL.at(roughness, t);
+    let [schlick, dent] = METAL.at(roughness, t);
     Reflection { total, mean: TOTAL.mean(roughness), schlick: schlick * total, dent: dent * total }
 }
 
@@ -67,7 +69,8 @@ pub(super) fn dielectric(roughness: f32, cos: f32, eta: f32, total: f32) -> Diel
     let (low, high, t) = index_position(eta);
     let (low, high) = (slice(low, eta < 1.0), slice(high, eta < 1.0));
     let mix = |a: f32, b: f32| a + (b - a) * t;
-    let (a, b) = (low.at(roughness, cos), high.at(roughness, cos));
+    let t_cos = axis(cos, critical_cos(eta));
+    let (a, b) = (low.at(roughness, t_cos), high.at(roughness, t_cos));
     let [rise, through, refracted, last] = std::array::from_fn(|k| mix(a[k], b[k]));
     let (layer, stray) = if eta < 1.0 { (0.0, last) } else { (last, 0.0) };
     Dielectric {
@@ -87,17 +90,51 @@ pub(super) fn compensation(total: f32, mean: f32, fss: Rgb) -> Rgb {
     fss.map(|f| 1.0 + f * mean / (1.0 - f * (1.0 - mean)).max(1e-4) * missing)
 }
 
-/// Makes the slices around `eta` now, from both sides, so that no ray has to.
-pub(super) fn prepare(eta: f32) {
-    let (low, high, _) = index_position(eta);
-    for inside in [false, true] {
-        slice(low, inside);
-        slice(high, inside);
+/// Makes the slices around every `eta` now, from both sides, so that no ray has to.
+pub(super) fn prepare(etas: &[f32]) {
+    LazyLock::force(&TOTAL);
+    LazyLock::force(&METAL);
+    etas.par_iter().for_each(|&eta| {
+        let (low, high, _) = index_position(eta);
+        [(low, false), (high, false), (low, true), (high, true)].into_par_iter().for_each(
+            |(index, inside)| {
+                slice(index, inside);
+            },
+        );
+    });
+}
+
+/// Cosine at which total reflection sets in, from inside; 0 from outside.
+fn critical_cos(eta: f32) -> f32 {
+    (1.0 - eta * eta).max(0.0).sqrt()
+}
+
+/// Where `cos` lies on the axis of cosines, 0 to 1: dense at grazing, where albedos bend, and with the edge of total
+/// reflection in the middle, so that tables of different indices can be mixed.
+fn axis(cos: f32, edge: f32) -> f32 {
+    let cos = cos.max(0.0);
+    if edge <= 0.0 {
+        cos.sqrt()
+    } else if cos < edge {
+        0.5 * (cos / edge).sqrt()
+    } else {
+        0.5 + 0.5 * ((cos - edge) / (1.0 - edge)).sqrt()
     }
 }
 
-/// K values at nodes uniform in roughness and in √cos (dense at grazing, where albedos bend), and one mean over cosines per
-/// roughness.
+/// The cosine at `t` of the axis: [`axis`] inverted, kept off 0.
+fn axis_cos(t: f32, edge: f32) -> f32 {
+    let cos = if edge <= 0.0 {
+        t * t
+    } else if t < 0.5 {
+        edge * (2.0 * t).powi(2)
+    } else {
+        edge + (1.0 - edge) * (2.0 * t - 1.0).powi(2)
+    };
+    cos.max(1e-4)
+}
+
+/// K values at nodes uniform in roughness and along [`axis`], and one mean over cosines per roughness.
 struct Table<const K: usize> {
     rows: usize,
     columns: usize,
@@ -109,16 +146,17 @@ impl<const K: usize> Table<K> {
     /// `value` takes alpha and cosine; `mean_of` takes roughness, cosine and the value, and is averaged.
     fn new(
         [rows, columns]: [usize; 2],
+        edge: f32,
         value: impl Fn(f32, f32) -> [f32; K],
         mean_of: impl Fn(f32, f32, &[f32; K]) -> f32,
     ) -> Self {
         let node = |k: usize, nodes: usize| k as f32 / (nodes - 1) as f32;
-        let cosines: Vec<f32> = (0..columns).map(|k| node(k, columns).powi(2).max(1e-4)).collect();
+        let cosines: Vec<f32> = (0..columns).map(|k| axis_cos(node(k, columns), edge)).collect();
         let (mut values, mut means) = (Vec::with_capacity(rows * columns), Vec::with_capacity(rows));
         for roughness in (0..rows).map(|k| node(k, rows)) {
             let row: Vec<_> = cosines.iter().map(|&cos| value(roughness * roughness, cos)).collect();
             let averaged = cosines.iter().zip(&row).map(|(&cos, value)| mean_of(roughness, cos, value));
-            means.push(mean_over_cosines(&averaged.collect::<Vec<f32>>()));
+            means.push(mean_over_cosines(&cosines, &averaged.collect::<Vec<f32>>()));
             values.extend(row);
         }
         Self { rows, columns, values, means }
@@ -129,9 +167,10 @@ impl<const K: usize> Table<K> {
         self.means[row] + (self.means[row + 1] - self.means[row]) * t
     }
 
-    fn at(&self, roughness: f32, cos: f32) -> [f32; K] {
+    /// At a roughness and a place `t` on the axis.
+    fn at(&self, roughness: f32, t: f32) -> [f32; K] {
         let (row, s) = roughness_position(roughness, self.rows);
-        let (column, t) = position(cos.max(0.0).sqrt(), self.columns);
+        let (column, t) = position(t, self.columns);
         let at = row * self.columns + column;
         let (a, b) = (&self.values[at], &self.values[at + 1]);
         let (c, d) = (&self.values[at + self.columns], &self.values[at + self.columns + 1]);
@@ -147,7 +186,7 @@ impl<const K: usize> Table<K> {
 /// ratios to it, which are smooth.
 static TOTAL: LazyLock<Table<1>> = LazyLock::new(|| {
     let total = |alpha, cos| integrate(alpha, cos, |wo, h| [reflection_masking(alpha, wo, h)]);
-    Table::new([64, 48], total, |_, _, [total]| *total)
+    Table::new([48, 40], 0.0, total, |_, _, [total]| *total)
 });
 
 /// Means of a metal's (1 − cos)⁵ and cos (1 − cos)⁶ over what is reflected.
@@ -161,7 +200,7 @@ static METAL: LazyLock<Table<2>> = LazyLock::new(|| {
         });
         [schlick / total, dent / total]
     };
-    Table::new([32, 32], parts, |_, _, _| 0.0)
+    Table::new([24, 32], 0.0, parts, |_, _, _| 0.0)
 });
 
 /// [`Dielectric`] at one node of the index from one side: rise, through, refracted, and layer (from outside) or stray (from
@@ -190,10 +229,12 @@ fn dielectric_table(eta: f32) -> Table<4> {
         let last = if eta < 1.0 { stray / total } else { layer };
         [rise / total, through / total, refracted / total, last]
     };
-    Table::new([32, 40], parts, |roughness, cos, [rise, through, _, last]| {
+    // Total reflection puts an edge into the albedos from inside.
+    let nodes = if eta < 1.0 { [40, 40] } else { [24, 32] };
+    Table::new(nodes, critical_cos(eta), parts, |roughness, cos, [rise, through, _, last]| {
         let stray = if eta < 1.0 { *last } else { 0.0 };
         let ratio = f0 * (1.0 - rise) + rise + (1.0 - f0) * (through + stray);
-        ratio * TOTAL.at(roughness, cos)[0]
+        ratio * TOTAL.at(roughness, axis(cos, 0.0))[0]
     })
 }
 
@@ -242,24 +283,15 @@ static LATTICE: LazyLock<Vec<([f32; 2], f32)>> = LazyLock::new(|| {
         .collect()
 });
 
-/// ∫ 2 cos f dcos with f linear between the nodes in √cos: f at t has weight 4 t³.
-fn mean_over_cosines(values: &[f32]) -> f32 {
-    const STEPS: usize = 8;
-    let steps = (values.len() - 1) * STEPS;
+/// ∫ 2 cos f dcos / ∫ 2 cos dcos with f linear between the nodes.
+fn mean_over_cosines(cosines: &[f32], values: &[f32]) -> f32 {
     let (mut sum, mut weights) = (0.0, 0.0);
-    for k in 0..steps {
-        let t = (k as f32 + 0.5) / steps as f32;
-        let weight = t * t * t;
-        sum += weight * interpolate(values, t);
-        weights += weight;
+    for (c, f) in cosines.windows(2).zip(values.windows(2)) {
+        let (at_low, at_high) = (2.0 * c[0] + c[1], c[0] + 2.0 * c[1]);
+        sum += (c[1] - c[0]) * (f[0] * at_low + f[1] * at_high);
+        weights += (c[1] - c[0]) * (at_low + at_high);
     }
     sum / weights
-}
-
-/// Linear interpolation between values at uniform nodes over [0, 1].
-fn interpolate(values: &[f32], x: f32) -> f32 {
-    let (at, t) = position(x, values.len());
-    values[at] + (values[at + 1] - values[at]) * t
 }
 
 /// Node below `x` in [0, 1] and the way to the next.

@@ -116,7 +116,6 @@ impl PreparedMaterial {
         self.classes = if self.lambert.is_black() { LobeSet::EMPTY } else { LobeSet::DIFFUSE };
         for (_, closure) in &self.closures {
             self.classes = self.classes | closure.classes();
-            closure.etas().for_each(energy_table::prepare);
         }
         if self.closures.is_empty() && self.transparency.is_black() {
             self.constant_lambert = Some(self.lambert);
@@ -264,7 +263,11 @@ impl MaterialTable {
     #[must_use]
     pub fn build(materials: &[Material]) -> Self {
         let mut problems = Vec::new();
-        let materials = materials.iter().map(|m| PreparedMaterial::new(m, &mut problems)).collect();
+        let materials: Vec<_> = materials.iter().map(|m| PreparedMaterial::new(m, &mut problems)).collect();
+        let closures = || materials.iter().flat_map(|m| &m.closures);
+        if closures().next().is_some() {
+            energy_table::prepare(&closures().flat_map(|(_, closure)| closure.etas()).collect::<Vec<_>>());
+        }
         Self { materials, problems }
     }
 
