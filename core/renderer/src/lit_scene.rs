@@ -44,11 +44,11 @@ impl<'a> LitScene<'a> {
         Surface { p: ray.origin + ray.direction * hit.t, ng, bsdf, hit }
     }
 
-    /// A ray that starts where it enters the scene's bounds: far-off origins cost no precision. Also gives how far the
+    /// A ray that starts where it enters the bounds of all there is to meet: far-off origins cost no precision. Also gives how far the
     /// origin was moved.
     #[must_use]
     pub fn entering(&self, origin: DVec3, direction: Vec3, mask: u32) -> (Ray, f32) {
-        let [low, high] = self.accel.scene().bounds.map(Vec3::as_dvec3);
+        let [low, high] = self.accel.bounds().map(Vec3::as_dvec3);
         let margin = DVec3::splat(1e-3);
         let d = direction.as_dvec3();
         let (to_low, to_high) = ((low - margin - origin) / d, (high + margin - origin) / d);

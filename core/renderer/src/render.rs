@@ -82,7 +82,8 @@ fn passes(
     progress.enter(Stage::Pyramid);
     let clock = Instant::now();
     stats.pyramid.build_bytes = layout.bytes() + accumulator.bytes();
-    let pyramid = Pyramid::build(accumulator, &layout, settings.pyramid.photons_per_cell);
+    let visible = |p, q| lit.accel.sees(p, q);
+    let pyramid = Pyramid::build(accumulator, &layout, settings.pyramid.photons_per_cell, visible);
     drop(layout);
     stats.pyramid.levels = pyramid.level_count();
     stats.pyramid.cells = pyramid.cell_count();

@@ -72,7 +72,7 @@ pub enum PixelFilter {
 pub struct FilmSettings {
     /// Pixel filter.
     pub filter: PixelFilter,
-    /// Its full width (pixels).
+    /// Its width (pixels) as Blender counts it: a box is that wide, Blackman-Harris reaches that far to either side.
     pub filter_width: f32,
     /// Edge of a tile (pixels), rounded up to a multiple of 4.
     pub tile_size: u32,
@@ -208,7 +208,7 @@ pub const KNOBS: &[Knob] = &[
     knob("gather", "retrace_distance", Kind::Float { minimum: 0.0, maximum: 8.0 }, "cells", "Gather rays shorter than this many cells are continued one bounce, which keeps corners right; 0 never"),
     knob("gather", "max_depth", int(1, 1000), "bounces", "Mirror, glass and short-ray bounces after which a path ends"),
     knob("film", "filter", Kind::Enum { choices: &["blackman_harris", "box"] }, "", "Pixel filter"),
-    knob("film", "filter_width", Kind::Float { minimum: 0.1, maximum: 10.0 }, "pixels", "Full width of the pixel filter"),
+    knob("film", "filter_width", Kind::Float { minimum: 0.1, maximum: 10.0 }, "pixels", "Width of the pixel filter as in Cycles: a box is that wide, Blackman-Harris reaches that far to either side"),
     knob("film", "tile_size", int(4, 4096), "pixels", "Edge of the tiles the picture is cut into; changes nothing in the picture"),
     knob("render", "threads", int(0, 1024), "threads", "Threads to use; 0 takes all; changes nothing in the picture"),
     knob("render", "seed", int(0, 2_147_483_647), "", "Another seed gives other noise"),

@@ -74,6 +74,7 @@ pub struct Accel<'a> {
     objects: Vec<ObjectRecord>,
     sees_lamps: bool,
     camera_sees_lamps: bool,
+    bounds: [Vec3; 2],
 }
 
 impl<'a> Accel<'a> {
@@ -136,13 +137,20 @@ impl<'a> Accel<'a> {
         }
         let embree = top.commit(&keep_going)?;
         let camera_sees_lamps = proxies.iter().any(|proxy| proxy.visibility & visibility::CAMERA != 0);
-        Ok(Self { scene, embree, records, objects, sees_lamps: !proxies.is_empty(), camera_sees_lamps })
+        let (sees_lamps, bounds) = (!proxies.is_empty(), embree.bounds().map(Vec3::from));
+        Ok(Self { scene, embree, records, objects, sees_lamps, camera_sees_lamps, bounds })
     }
 
     /// The scene that is traced.
     #[must_use]
     pub const fn scene(&self) -> &'a Scene {
         self.scene
+    }
+
+    /// Bounds of all surfaces and of the lamps that rays can meet; empty where there are none.
+    #[must_use]
+    pub const fn bounds(&self) -> [Vec3; 2] {
+        self.bounds
     }
 
     /// The lamp bit for rays that may meet lamps, 0 where there are none to meet.
@@ -174,6 +182,19 @@ impl<'a> Accel<'a> {
     #[must_use]
     pub fn occluded(&self, ray: &Ray, t_far: f32) -> bool {
         self.embree.occluded(&embree_ray(ray, t_far))
+    }
+
+    /// True when nothing lies between two points.
+    #[must_use]
+    pub fn sees(&self, p: Vec3, q: Vec3) -> bool {
+        let ray = EmbreeRay {
+            origin: p.to_array(),
+            direction: (q - p).to_array(),
+            t_near: 0.0,
+            t_far: 1.0,
+            mask: visibility::DIFFUSE,
+        };
+        !self.embree.occluded(&ray)
     }
 
     /// Unit geometric normal of a triangle, outward as modelled.

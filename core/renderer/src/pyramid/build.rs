@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use glam::Vec3;
 use rayon::prelude::*;
 
 use super::accumulator::{Accumulator, CellSum, Sums};
 use super::bins::BinStore;
 use super::index::{CellKey, LevelIndex};
 use super::layout::Layout;
+use super::mixed::mixed_cells;
 use super::{Cell, Level, Pyramid};
 use crate::color::Rgb;
 use crate::math::Frame;
@@ -17,17 +19,33 @@ const SLIVER: f64 = 0.1;
 
 impl Pyramid {
     /// Merges the levels and settles which cells are read from their parents: those whose *parent* holds fewer than
-    /// `4 × photons_per_cell` photons (a rule on the cell's own count would brighten the picture), and slivers.
+    /// `4 × photons_per_cell` photons (a rule on the cell's own count would brighten the picture), and slivers. `visible`
+    /// tells whether two points see each other: cells whose parts do not are read from finer ones.
     #[must_use]
-    pub fn build(accumulator: Accumulator<'_>, layout: &Layout, photons_per_cell: u32) -> Self {
+    pub fn build(
+        accumulator: Accumulator<'_>,
+        layout: &Layout,
+        photons_per_cell: u32,
+        visible: impl Fn(Vec3, Vec3) -> bool + Sync,
+    ) -> Self {
         let mut sums = accumulator.into_sums();
         merge(layout, &mut sums);
+        let mixed = mixed_cells(layout, &sums.cells, &visible);
         let enough = 4 * u64::from(photons_per_cell);
         let mut store = BinStore::new(sums.bins);
         let mut levels: Vec<Level> = Vec::with_capacity(layout.levels.len());
         for number in 0..layout.levels.len() {
             let glossy = push_bins(layout, number, &sums, &mut store);
-            let settle = |place: usize| settle(layout, number, place, &sums, enough, &glossy, levels.last());
+            let parents = levels.last();
+            let settle = |place: usize| {
+                let own = own_cell(layout, number, place, &sums, glossy.get(&place).copied());
+                let own = own.with(sums.cells[number][place].count >= enough, mixed[number][place]);
+                let parent = parents.and_then(|parents| {
+                    let (cell, class) = layout.levels[number].keys[place].cell(&layout.grid.levels[number]);
+                    parents.find(layout.grid.parent(number, cell)?, class)
+                });
+                settle(layout, number, place, own, parent)
+            };
             let values: Vec<Cell> =
                 (0..layout.levels[number].keys.len()).into_par_iter().map(settle).collect();
             levels.push(keep_lit(layout, number, &sums.cells[number], &values));
@@ -36,27 +54,20 @@ impl Pyramid {
     }
 }
 
-/// A cell as it will be read: its own values, or its parent's.
-fn settle(
-    layout: &Layout,
-    number: usize,
-    place: usize,
-    sums: &Sums,
-    enough: u64,
-    glossy: &BTreeMap<usize, u32>,
-    parents: Option<&Level>,
-) -> Cell {
-    let cells = &layout.levels[number];
-    let sum = &sums.cells[number][place];
-    let area = cells.surfaces[place].area as f64 * layout.area_unit;
-    let irradiance = Rgb(sum.flux.map(|flux| (flux as f64 * sums.quantum / area) as f32));
-    let own = Cell::new(irradiance, glossy.get(&place).copied(), sum.count >= enough);
-    let (cell, class) = cells.keys[place].cell(&layout.grid.levels[number]);
-    let parent = parents.and_then(|parents| parents.find(layout.grid.parent(number, cell)?, class));
-    let face = f64::from(layout.grid.levels[number].cell_size).powi(2);
+/// A cell with its own light.
+fn own_cell(layout: &Layout, number: usize, place: usize, sums: &Sums, glossy: Option<u32>) -> Cell {
+    let area = layout.levels[number].surfaces[place].area as f64 * layout.area_unit;
+    let flux = sums.cells[number][place].flux;
+    Cell::new(Rgb(flux.map(|flux| (flux as f64 * sums.quantum / area) as f32)), glossy)
+}
+
+/// A cell as it will be read: its own values, or its parent's where they are too few and the parent is no mixture.
+fn settle(layout: &Layout, number: usize, place: usize, own: Cell, parent: Option<&Cell>) -> Cell {
+    let area = layout.levels[number].surfaces[place].area as f64 * layout.area_unit;
+    let sliver = area < SLIVER * f64::from(layout.grid.levels[number].cell_size).powi(2);
     match parent {
-        Some(parent) if !parent.holds_enough() || area < SLIVER * face => {
-            Cell::new(parent.irradiance(), parent.glossy(), own.holds_enough())
+        Some(parent) if !parent.is_mixed() && (sliver || !parent.holds_enough()) => {
+            Cell::new(parent.irradiance(), parent.glossy()).with(own.holds_enough(), own.is_mixed())
         }
         _ => own,
     }
@@ -77,13 +88,9 @@ fn push_bins(layout: &Layout, number: usize, sums: &Sums, store: &mut BinStore) 
 /// Adds every cell to its parent, from the finest level up.
 fn merge(layout: &Layout, sums: &mut Sums) {
     for level in (1..layout.levels.len()).rev() {
-        let place_of_parent = |place: usize| {
-            let (cell, class) = layout.levels[level].keys[place].cell(&layout.grid.levels[level]);
-            layout.levels[level - 1].index.find(layout.grid.parent(level, cell)?, class)
-        };
         let (coarser, finer) = sums.cells.split_at_mut(level);
         for (place, sum) in finer[0].iter().enumerate().filter(|(_, sum)| sum.count > 0) {
-            if let Some(parent) = place_of_parent(place) {
+            if let Some(parent) = layout.parent(level, place) {
                 coarser[level - 1][parent].add(sum);
             }
         }
@@ -91,7 +98,7 @@ fn merge(layout: &Layout, sums: &mut Sums) {
             |level: usize, place: usize| Frame::new(layout.levels[level].surfaces[place].mean_normal());
         let (coarser, finer) = sums.glossy.split_at_mut(level);
         for (&place, values) in &finer[0] {
-            if let Some(parent) = place_of_parent(place) {
+            if let Some(parent) = layout.parent(level, place) {
                 let empty = || vec![[0; 3]; sums.bins.count()];
                 let total = coarser[level - 1].entry(parent).or_insert_with(empty);
                 sums.bins.add(&frame(level, place), values, &frame(level - 1, parent), total);

@@ -8,9 +8,18 @@ use super::grid::Grid;
 /// A triangle cut by at most six planes.
 type Polygon = ArrayVec<DVec3, 12>;
 
-/// Calls `add(level, cell, area)` for every cell in which light of this triangle is stored: the finest that exist where
+/// What lies of a triangle in one cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    /// Area (square scene units).
+    pub(super) area: f64,
+    /// Center of gravity, relative to the lattice's origin.
+    pub(super) centroid: DVec3,
+}
+
+/// Calls `add(level, cell, part)` for every cell in which light of this triangle is stored: the finest that exist where
 /// the parts of the triangle lie. The areas add up to the triangle's (Sutherland and Hodgman 1974, halving cells).
-pub fn clip_triangle(grid: &Grid, corners: [DVec3; 3], add: &mut impl FnMut(usize, IVec3, f64)) {
+pub fn clip_triangle(grid: &Grid, corners: [DVec3; 3], add: &mut impl FnMut(usize, IVec3, Part)) {
     let offsets = corners.map(|p| grid.offset_f64(p));
     let polygon: Polygon = offsets.into_iter().collect();
     let (low, high) = extent(&polygon);
@@ -45,7 +54,7 @@ fn descend(
     level: usize,
     lattice: IVec3,
     polygon: Polygon,
-    add: &mut impl FnMut(usize, IVec3, f64),
+    add: &mut impl FnMut(usize, IVec3, Part),
 ) {
     if polygon.len() < 3 {
         return;
@@ -53,9 +62,9 @@ fn descend(
     let Some(cell) = grid.levels[level].within(lattice) else { return };
     let finer = grid.levels.get(level + 1).is_some_and(|finer| finer.within(lattice << 1_i32).is_some());
     if !finer {
-        let area = area(&polygon);
-        if area > 0.0 {
-            add(level, cell, area);
+        let part = measure(&polygon);
+        if part.area > 0.0 {
+            add(level, cell, part);
         }
         return;
     }
@@ -119,10 +128,15 @@ fn extent(polygon: &Polygon) -> (DVec3, DVec3) {
     polygon.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
 }
 
-fn area(polygon: &Polygon) -> f64 {
+fn measure(polygon: &Polygon) -> Part {
     let a = polygon[0];
-    let fan = polygon.windows(2).skip(1).map(|edge| (edge[0] - a).cross(edge[1] - a));
-    0.5 * fan.sum::<DVec3>().length()
+    let (mut area, mut moment) = (0.0, DVec3::ZERO);
+    for edge in polygon.windows(2).skip(1) {
+        let triangle = 0.5 * (edge[0] - a).cross(edge[1] - a).length();
+        area += triangle;
+        moment += (a + edge[0] + edge[1]) * (triangle / 3.0);
+    }
+    Part { area, centroid: if area > 0.0 { moment / area } else { a } }
 }
 
 #[cfg(test)]
@@ -138,8 +152,8 @@ mod tests {
 
     fn total(corners: [DVec3; 3]) -> (f64, usize) {
         let (mut sum, mut cells) = (0.0, BTreeMap::new());
-        clip_triangle(&grid(), corners, &mut |level, cell, area| {
-            sum += area;
+        clip_triangle(&grid(), corners, &mut |level, cell, part| {
+            sum += part.area;
             *cells.entry((level, cell.to_array())).or_insert(0) += 1;
         });
         assert!(cells.values().all(|&times| times == 1), "a triangle meets a cell once");

@@ -98,7 +98,13 @@ impl Grid {
         p - self.origin
     }
 
-    /// The same in f64, for clipping.
+    /// The inverse of [`Grid::offset`].
+    #[must_use]
+    pub fn position(&self, offset: Vec3) -> Vec3 {
+        offset + self.origin
+    }
+
+    /// The same as [`Grid::offset`] in f64, for clipping.
     #[must_use]
     pub fn offset_f64(&self, p: DVec3) -> DVec3 {
         p - self.origin_f64

@@ -26,6 +26,8 @@ pub struct CellSurface {
     pub area: i64,
     /// Area-weighted normal, in the same unit.
     pub normal: [i64; 3],
+    /// Area-weighted position relative to the lattice's origin, in the same unit.
+    pub centroid: [i64; 3],
     /// Area of what needs direction bins.
     pub glossy_area: i64,
 }
@@ -35,8 +37,16 @@ impl CellSurface {
         self.area += other.area;
         for c in 0..3 {
             self.normal[c] += other.normal[c];
+            self.centroid[c] += other.centroid[c];
         }
         self.glossy_area += other.glossy_area;
+    }
+
+    /// Center of gravity, relative to the lattice's origin.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "a position needs no more than 53 bits")]
+    pub fn centroid(&self) -> Vec3 {
+        (DVec3::from(self.centroid.map(|c| c as f64)) / self.area.max(1) as f64).as_vec3()
     }
 
     /// Unit mean normal; the class's own axis would be wrong by up to 55°.
@@ -141,6 +151,13 @@ impl Layout {
         Some((level, place))
     }
 
+    /// Place of the coarser cell that holds a cell.
+    #[must_use]
+    pub fn parent(&self, level: usize, place: usize) -> Option<usize> {
+        let (cell, class) = self.levels[level].keys[place].cell(&self.grid.levels[level]);
+        self.levels[level - 1].index.find(self.grid.parent(level, cell)?, class)
+    }
+
     /// Memory (bytes).
     #[must_use]
     pub fn bytes(&self) -> usize {
@@ -168,13 +185,15 @@ fn measure(
     let [a, b, c] = triangle.corners;
     let normal = (b - a).cross(c - a).normalize_or_zero();
     let sides = classes.of_sides(normal);
-    clip_triangle(grid, triangle.corners, &mut |level, cell, area| {
-        let units = area / area_unit;
+    clip_triangle(grid, triangle.corners, &mut |level, cell, part| {
+        let units = part.area / area_unit;
+        let centroid = (part.centroid * units).to_array().map(|c| c.round() as i64);
         for (class, sign) in sides.into_iter().zip([1.0, -1.0]) {
             let area = units.round() as i64;
             let surface = CellSurface {
                 area,
                 normal: (normal * (sign * units)).to_array().map(|c| c.round() as i64),
+                centroid,
                 glossy_area: if triangle.glossy { area } else { 0 },
             };
             if surface.area > 0 {

@@ -23,6 +23,7 @@ mod clip;
 mod grid;
 mod index;
 mod layout;
+mod mixed;
 
 use glam::{IVec3, Vec3};
 
@@ -41,17 +42,18 @@ use index::LevelIndex;
 #[repr(C, align(16))]
 struct Cell {
     irradiance: [f32; 3],
-    /// Lowest bit: whether there are enough photons for the cell's children to be read. Above it: one more than the number
-    /// of its direction bins, 0 where it has none.
+    /// Lowest bit: whether there are enough photons for the cell's children to be read. Next: whether it is mixed. Above
+    /// them: one more than the number of its direction bins, 0 where it has none.
     rest: u32,
 }
 
 impl Cell {
-    fn new(irradiance: Rgb, glossy: Option<u32>, enough: bool) -> Self {
-        Self {
-            irradiance: irradiance.0,
-            rest: glossy.map_or(0, |number| (number + 1) << 1) | u32::from(enough),
-        }
+    fn new(irradiance: Rgb, glossy: Option<u32>) -> Self {
+        Self { irradiance: irradiance.0, rest: glossy.map_or(0, |number| (number + 1) << 2) }
+    }
+
+    fn with(self, enough: bool, mixed: bool) -> Self {
+        Self { rest: self.rest & !3 | u32::from(enough) | u32::from(mixed) << 1, ..self }
     }
 
     const fn irradiance(&self) -> Rgb {
@@ -59,11 +61,16 @@ impl Cell {
     }
 
     const fn glossy(&self) -> Option<u32> {
-        (self.rest >> 1).checked_sub(1)
+        (self.rest >> 2).checked_sub(1)
     }
 
     const fn holds_enough(&self) -> bool {
         self.rest & 1 != 0
+    }
+
+    /// Whether it holds surfaces that do not see each other, and finer cells have to be read.
+    const fn is_mixed(&self) -> bool {
+        self.rest & 2 != 0
     }
 }
 
@@ -187,14 +194,40 @@ impl Pyramid {
     /// The cell to read; `None` where it is dark.
     #[inline]
     fn find(&self, p: Vec3, class: usize, level: usize) -> Option<&Cell> {
-        let (mut level, mut cell) = self.grid.locate(self.grid.offset(p), level)?;
-        if let Some(found) = self.levels[level].find(cell, class) {
-            return Some(found);
+        let offset = self.grid.offset(p);
+        let (level, cell) = self.grid.locate(offset, level)?;
+        match self.levels[level].find(cell, class) {
+            Some(found) if found.is_mixed() => self.find_finer(found, offset, class, level),
+            Some(found) => Some(found),
+            None => self.find_coarser(cell, class, level),
         }
+    }
+
+    /// Below a mixed cell: the coarsest that is none, or the finest there is.
+    fn find_finer<'a>(
+        &'a self,
+        mut found: &'a Cell,
+        offset: Vec3,
+        class: usize,
+        level: usize,
+    ) -> Option<&'a Cell> {
+        for level in level + 1..self.levels.len() {
+            let Some(cell) = self.grid.levels[level].cell(offset) else { break };
+            found = self.levels[level].find(cell, class)?;
+            if !found.is_mixed() {
+                break;
+            }
+        }
+        Some(found)
+    }
+
+    /// Above a cell without a photon: dark where enough photons landed beside it to know, or where those beside it are
+    /// behind a wall.
+    fn find_coarser(&self, mut cell: IVec3, class: usize, mut level: usize) -> Option<&Cell> {
         while level > 0 {
             (cell, level) = (self.grid.parent(level, cell)?, level - 1);
             if let Some(found) = self.levels[level].find(cell, class) {
-                return (!found.holds_enough()).then_some(found);
+                return (!found.holds_enough() && !found.is_mixed()).then_some(found);
             }
         }
         None

@@ -12,7 +12,8 @@ pub struct FilterTable {
 const ENTRIES: usize = 8192;
 
 impl FilterTable {
-    /// Table of a filter of full width `width` (pixels).
+    /// Table of a filter of width `width` (pixels) as Blender counts it: a box is that wide, a Blackman-Harris window
+    /// reaches that far to either side.
     #[must_use]
     #[expect(
         clippy::cast_precision_loss,
@@ -20,7 +21,11 @@ impl FilterTable {
         reason = "table indices are small"
     )]
     pub fn new(filter: PixelFilter, width: f32) -> Self {
-        let steps = 64 * ENTRIES;
+        let width = match filter {
+            PixelFilter::Box => width,
+            PixelFilter::BlackmanHarris => 2.0 * width,
+        };
+        let steps = 16 * ENTRIES;
         let position = |i: usize| (i as f64 + 0.5) / steps as f64 - 0.5;
         let weights: Vec<f64> = (0..steps).map(|i| density(filter, position(i))).collect();
         let total: f64 = weights.iter().sum();
@@ -86,7 +91,7 @@ mod tests {
         let a = [0.35875, -0.48829, 0.14128, -0.01168];
         let terms = (1..4).map(|k| a[k] / (2.0 * std::f64::consts::PI.powi(2) * (k * k) as f64));
         let moment = a[0] / 12.0 + terms.sum::<f64>();
-        let expected = 1.5 * 1.5 * moment / a[0];
+        let expected = 3.0 * 3.0 * moment / a[0];
         let got = variance(PixelFilter::BlackmanHarris);
         assert!((got - expected).abs() < 1e-3 * expected, "{got} against {expected}");
     }

@@ -1,0 +1,143 @@
+//! Radiance and photons see the same surface: reciprocity, the adjoint, refraction and shading normals.
+
+mod bsdf_support;
+
+use bsdf_support::{
+    IMPORTANCE, RADIANCE, Rng, at, diffuse, glass, glossy, prepared, principled, sampled_albedo, seen,
+};
+use glam::Vec3;
+use rgp_renderer::bsdf::{LobeSet, PreparedMaterial};
+use rgp_renderer::color::Rgb;
+use rgp_renderer::scene::record::ClosureRecord;
+
+/// Calls `check(wo, wi)` for directions above a plane facing +z.
+fn pairs_above(mut check: impl FnMut(Vec3, Vec3)) {
+    let mut rng = Rng(11);
+    for _ in 0..500 {
+        let [wo, wi] = [rng.direction(), rng.direction()];
+        check(Vec3::new(wo.x, wo.y, wo.z.abs()), Vec3::new(wi.x, wi.y, wi.z.abs()));
+    }
+}
+
+#[test]
+fn lambert_and_single_scattering_reflection_are_reciprocal() {
+    // Roughness 0.1 loses so little that the energy compensation, which depends on the viewer, is below the bound.
+    let base = principled(|p| {
+        p.base_color = Rgb::BLACK;
+        p.roughness = 0.1;
+        p.specular_tint = Rgb([1.0, 0.6, 0.3]);
+    });
+    for (closure, bound) in [(diffuse(0.6), 1e-6), (base, 2e-3)] {
+        let material = prepared(closure);
+        pairs_above(|wo, wi| {
+            if wo.z.min(wi.z) < 0.2 {
+                return;
+            }
+            let there = material.bsdf(wo, Vec3::Z, Vec3::Z).eval(wi, LobeSet::ALL, RADIANCE);
+            let back = material.bsdf(wi, Vec3::Z, Vec3::Z).eval(wo, LobeSet::ALL, RADIANCE);
+            assert!((there - back).map(f32::abs).max_channel() <= bound * there.max_channel().max(1e-6));
+        });
+    }
+}
+
+#[test]
+fn photons_see_the_value_that_radiance_sees_the_other_way() {
+    let material = prepared(principled(|p| {
+        (p.roughness, p.coat_weight, p.coat_roughness) = (0.7, 0.5, 0.4);
+    }));
+    let mut differs = 0;
+    pairs_above(|wo, wi| {
+        let photon = material.bsdf(wo, Vec3::Z, Vec3::Z).eval(wi, LobeSet::ALL, IMPORTANCE);
+        let radiance = material.bsdf(wi, Vec3::Z, Vec3::Z).eval(wo, LobeSet::ALL, RADIANCE);
+        assert!((photon - radiance).map(f32::abs).max_channel() <= 1e-5 * radiance.max_channel());
+        let forward = material.bsdf(wo, Vec3::Z, Vec3::Z).eval(wi, LobeSet::ALL, RADIANCE);
+        differs +=
+            u32::from((forward - radiance).map(f32::abs).max_channel() > 0.01 * radiance.max_channel());
+    });
+    assert!(differs > 100, "layers depend on the viewer, so the two directions must differ");
+}
+
+/// Flux sent to the viewer's directions by uniform light from everywhere, and flux of photons from everywhere that leaves:
+/// the same double integral over both directions.
+fn both_ways(material: &PreparedMaterial, front: bool, set: LobeSet) -> (f64, f64) {
+    let (mut radiance, mut importance) = (0.0, 0.0);
+    for step in 0..16 {
+        let cos = (step as f32 + 0.5) / 16.0;
+        let weight = f64::from(2.0 * cos / 16.0);
+        radiance += weight * sampled_albedo(&seen(material, cos, front), set, RADIANCE);
+        importance += weight * sampled_albedo(&seen(material, cos, front), set, IMPORTANCE);
+    }
+    (radiance, importance)
+}
+
+#[test]
+fn layered_diffuse_reflects_as_much_flux_as_radiance() {
+    let material = prepared(principled(|p| (p.roughness, p.ior) = (0.4, 1.8)));
+    let (radiance, importance) = both_ways(&material, true, LobeSet::ALL);
+    assert!((radiance - importance).abs() < 0.003, "{radiance} against {importance}");
+}
+
+#[test]
+fn photons_lose_the_squared_index_on_entering_and_win_it_back() {
+    for roughness in [0.0, 0.5] {
+        let refraction = ClosureRecord::Refraction { color: Rgb::WHITE, roughness, ior: 1.5 };
+        let material = prepared(refraction);
+        // Radiance that arrives outside from inside, over both hemispheres, is the flux photons carry from inside to outside.
+        let outward = both_ways(&material, false, LobeSet::ALL).1;
+        let seen_from_outside = both_ways(&material, true, LobeSet::ALL).0;
+        assert!((outward - seen_from_outside).abs() < 0.01, "{outward} against {seen_from_outside}");
+        let inward = both_ways(&material, true, LobeSet::ALL).1;
+        let seen_from_inside = both_ways(&material, false, LobeSet::ALL).0;
+        assert!((inward - seen_from_inside).abs() < 0.01, "{inward} against {seen_from_inside}");
+        if roughness == 0.0 {
+            // Everything passes inwards: 1/η² of the flux. Outwards what is not totally reflected, 1/η², times η².
+            assert!((inward - 1.0 / 2.25).abs() < 1e-3 && (outward - 1.0).abs() < 0.03);
+        }
+    }
+}
+
+#[test]
+fn squared_index_undoes_itself_through_a_slab() {
+    let material = prepared(glass(1.0, 0.0, 1.5));
+    let enter = seen(&material, 0.7, true);
+    let into = enter.sample(0.99, [0.5; 2], LobeSet::ALL, IMPORTANCE).expect("refracts");
+    assert!(into.is_transmission && (into.eta_squared - 2.25).abs() < 1e-5);
+    assert!((into.weight.mean() * into.eta_squared - 1.0).abs() < 1e-4);
+    let leave = material.bsdf(-into.wi, Vec3::NEG_Z, Vec3::NEG_Z);
+    let out = leave.sample(0.99, [0.5; 2], LobeSet::ALL, IMPORTANCE).expect("refracts");
+    assert!((into.eta_squared * out.eta_squared - 1.0).abs() < 1e-5);
+    assert!((into.weight.mean() * out.weight.mean() - 1.0).abs() < 1e-4);
+    assert!(out.wi.distance(-at(0.7)) < 1e-5, "leaves parallel to where it came from");
+}
+
+#[test]
+fn nothing_is_reflected_below_the_geometric_surface() {
+    let ns = Vec3::new(0.6, 0.0, 0.8);
+    for closure in [diffuse(0.8), glossy(0.8, 0.6), principled(|p| p.coat_weight = 1.0)] {
+        let material = prepared(closure);
+        let mut rng = Rng(5);
+        for _ in 0..3000 {
+            let wo = rng.direction();
+            let bsdf = material.bsdf(wo, Vec3::Z, ns);
+            assert!(bsdf.frame.ng.dot(wo) >= 0.0 && bsdf.frame.ns.dot(wo) > 0.0);
+            let wi = rng.direction();
+            if wi.dot(bsdf.frame.ng) < 0.0 {
+                assert!(bsdf.eval(wi, LobeSet::ALL, RADIANCE).is_black());
+            }
+            if let Some(sample) = bsdf.sample(rng.next(), [rng.next(), rng.next()], LobeSet::ALL, RADIANCE) {
+                assert!(sample.wi.dot(bsdf.frame.ng) >= 0.0 && !sample.is_transmission);
+            }
+        }
+    }
+}
+
+#[test]
+fn photons_correct_for_shading_normals() {
+    // Veach 1997, equation 5.19: f* = f |wo·ns| |wi·ng| / (|wo·ng| |wi·ns|).
+    let ns = Vec3::new(0.3, 0.1, 0.9).normalize();
+    let material = prepared(diffuse(0.5));
+    let (wo, wi) = (at(0.8), Vec3::new(0.2, -0.5, 0.7).normalize());
+    let value = material.bsdf(wo, Vec3::Z, ns).eval(wi, LobeSet::ALL, IMPORTANCE).mean();
+    let expected = 0.5 / std::f32::consts::PI * wo.dot(ns) * wi.z / (wo.z * wi.dot(ns));
+    assert!((value / expected - 1.0).abs() < 1e-5);
+}
