@@ -17,7 +17,7 @@ const INSIDE: f64 = 0.0075;
 /// Albedo by sampling, checked to be what the tables say.
 fn albedo(material: &PreparedMaterial, cos: f32, front: bool, bound: f64, what: &str) -> f64 {
     let bsdf = seen(material, cos, front);
-    let sampled = sampled_albedo(&bsdf, LobeSet::ALL, RADIANCE);
+    let sampled = sampled_albedo(&bsdf, LobeSet::ALL, RADIANCE, 48);
     let tabulated = f64::from(bsdf.albedo(LobeSet::ALL).mean());
     assert!((sampled - tabulated).abs() < bound, "{what}: sampled {sampled}, tabulated {tabulated}");
     sampled
@@ -83,7 +83,7 @@ fn lambert_albedo_is_its_color() {
     for cos in COSINES {
         let bsdf = seen(&bsdf_of, cos, true);
         assert_eq!(bsdf.albedo(LobeSet::ALL), Rgb::splat(0.37));
-        assert!((sampled_albedo(&bsdf, LobeSet::ALL, RADIANCE) - 0.37).abs() < 1e-5);
+        assert!((sampled_albedo(&bsdf, LobeSet::ALL, RADIANCE, 48) - 0.37).abs() < 1e-5);
     }
 }
 
@@ -99,7 +99,7 @@ fn colored_lobes_match_their_tables() {
                     principled(|p| {
                         p.metallic = 1.0;
                         p.base_color = Rgb([0.9, 0.6, 0.2]);
-                        p.specular_tint = Rgb([0.8, 0.4, 0.0]);
+                        p.specular_tint = Rgb([0.8, 0.4, 0.2]);
                     }),
                 ),
                 (
@@ -136,6 +136,7 @@ fn gray(rings: [f32; 3]) -> Rings {
 
 /// Closure, whether seen from outside, rings.
 #[rustfmt::skip]
+#[expect(clippy::approx_constant, reason = "measured; its likeness to 1/√π is chance")]
 fn cycles() -> Vec<(ClosureRecord, bool, Rings)> {
     let refraction = ClosureRecord::Refraction { color: Rgb::splat(0.9), roughness: 1.0, ior: 1.5 };
     let copper = Rgb([0.9, 0.6, 0.2]);
@@ -213,10 +214,13 @@ fn materials_return_what_they_return_in_cycles() {
                 let bsdf = seen(&material, cos, front);
                 sum += bsdf.albedo(LobeSet::ALL) + bsdf.emission + bsdf.transparency;
             }
-            for k in 0..3 {
-                let ours = sum.0[k] / cosines.len() as f32;
-                let off = (ours / expected[k] - 1.0) * 100.0;
-                assert!(off.abs() < 1.0, "{closure:?}, channel {k}: {ours} for {}, {off:+.2} %", expected[k]);
+            for (channel, (sum, expected)) in sum.0.iter().zip(expected).enumerate() {
+                let ours = sum / cosines.len() as f32;
+                let off = (ours / expected - 1.0) * 100.0;
+                assert!(
+                    off.abs() < 1.0,
+                    "{closure:?}, channel {channel}: {ours} for {expected}, {off:+.2} %"
+                );
             }
         }
     }

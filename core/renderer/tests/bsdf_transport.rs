@@ -61,11 +61,11 @@ fn photons_see_the_value_that_radiance_sees_the_other_way() {
 /// the same double integral over both directions.
 fn both_ways(material: &PreparedMaterial, front: bool, set: LobeSet) -> (f64, f64) {
     let (mut radiance, mut importance) = (0.0, 0.0);
-    for step in 0..16 {
-        let cos = (step as f32 + 0.5) / 16.0;
-        let weight = f64::from(2.0 * cos / 16.0);
-        radiance += weight * sampled_albedo(&seen(material, cos, front), set, RADIANCE);
-        importance += weight * sampled_albedo(&seen(material, cos, front), set, IMPORTANCE);
+    for step in 0..200 {
+        let cos = (step as f32 + 0.5) / 200.0;
+        let weight = f64::from(2.0 * cos / 200.0);
+        radiance += weight * sampled_albedo(&seen(material, cos, front), set, RADIANCE, 12);
+        importance += weight * sampled_albedo(&seen(material, cos, front), set, IMPORTANCE, 12);
     }
     (radiance, importance)
 }
@@ -85,13 +85,13 @@ fn photons_lose_the_squared_index_on_entering_and_win_it_back() {
         // Radiance that arrives outside from inside, over both hemispheres, is the flux photons carry from inside to outside.
         let outward = both_ways(&material, false, LobeSet::ALL).1;
         let seen_from_outside = both_ways(&material, true, LobeSet::ALL).0;
-        assert!((outward - seen_from_outside).abs() < 0.01, "{outward} against {seen_from_outside}");
+        assert!((outward - seen_from_outside).abs() < 0.005, "{outward} against {seen_from_outside}");
         let inward = both_ways(&material, true, LobeSet::ALL).1;
         let seen_from_inside = both_ways(&material, false, LobeSet::ALL).0;
-        assert!((inward - seen_from_inside).abs() < 0.01, "{inward} against {seen_from_inside}");
+        assert!((inward - seen_from_inside).abs() < 0.005, "{inward} against {seen_from_inside}");
         if roughness == 0.0 {
             // Everything passes inwards: 1/η² of the flux. Outwards what is not totally reflected, 1/η², times η².
-            assert!((inward - 1.0 / 2.25).abs() < 1e-3 && (outward - 1.0).abs() < 0.03);
+            assert!((inward - 1.0 / 2.25).abs() < 1e-3 && (outward - 1.0).abs() < 5e-3);
         }
     }
 }

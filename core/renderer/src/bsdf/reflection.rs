@@ -64,7 +64,8 @@ pub(super) struct Metal {
 }
 
 impl Metal {
-    /// Adds the lobe.
+    /// Adds the lobe. Its albedo knows nothing of the clamp at 0 in [`fresnel::metal`]: 0.015 too low for an edge tint of 0,
+    /// less than 0.005 from 0.2 on.
     pub(super) fn push(self, lobes: &mut LobeList, weight: Rgb, rough: Roughness, cos: f32, slot: u8) {
         let table = energy_table::reflection(rough.roughness, cos);
         let fss = fresnel::metal_mean(self.f0, self.dip);

@@ -7,6 +7,9 @@ use crate::scene::record::{ClosureRecord, PrincipledRecord};
 /// Indices of refraction kept; Blender's sockets allow 0 to 1000.
 const IOR: [f32; 2] = [1e-2, 100.0];
 
+/// Largest emission kept, so that sums and products stay finite.
+const BRIGHTEST: f32 = 1e15;
+
 /// Brings values into range and counts what it changed, for one material.
 #[derive(Debug, Default)]
 pub(super) struct Sanitizer {
@@ -54,7 +57,7 @@ impl Sanitizer {
                 ClosureRecord::Transparent { color: self.color(color, 1.0) }
             }
             ClosureRecord::Emission { radiance } => {
-                ClosureRecord::Emission { radiance: self.color(radiance, f32::MAX) }
+                ClosureRecord::Emission { radiance: self.color(radiance, BRIGHTEST) }
             }
             ClosureRecord::Glossy { color, roughness } => ClosureRecord::Glossy {
                 color: self.color(color, 1.0),
@@ -89,8 +92,8 @@ impl Sanitizer {
             coat_roughness: self.value(record.coat_roughness, UNIT),
             coat_ior: self.value(record.coat_ior, [1.0, IOR[1]]),
             coat_tint: self.color(record.coat_tint, 1.0),
-            emission_color: self.color(record.emission_color, f32::MAX),
-            emission_strength: self.value(record.emission_strength, [0.0, f32::MAX]),
+            emission_color: self.color(record.emission_color, BRIGHTEST),
+            emission_strength: self.value(record.emission_strength, [0.0, BRIGHTEST]),
         }
     }
 

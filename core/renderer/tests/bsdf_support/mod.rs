@@ -73,19 +73,18 @@ impl Rng {
     }
 }
 
-/// Mean weight of one sample in each of 48³ cells of the sampling cube: an estimate of the albedo that owes nothing to the
+/// Mean weight of one sample in each of `cells`³ cells of the sampling cube: an estimate of the albedo that owes nothing to the
 /// tables but the choice of lobes.
-pub(crate) fn sampled_albedo(bsdf: &Bsdf<'_>, set: LobeSet, mode: TransportMode) -> f64 {
-    const CELLS: u32 = 48;
+pub(crate) fn sampled_albedo(bsdf: &Bsdf<'_>, set: LobeSet, mode: TransportMode, cells: u32) -> f64 {
     let mut rng = Rng(7);
     let mut sum = 0.0;
-    for cell in 0..CELLS.pow(3) {
-        let mut u = |k: u32| ((cell / CELLS.pow(k) % CELLS) as f32 + rng.next()) / CELLS as f32;
+    for cell in 0..cells.pow(3) {
+        let mut u = |k: u32| ((cell / cells.pow(k) % cells) as f32 + rng.next()) / cells as f32;
         if let Some(sample) = bsdf.sample(u(0), [u(1), u(2)], set, mode) {
             sum += f64::from(sample.weight.mean());
         }
     }
-    sum / f64::from(CELLS.pow(3))
+    sum / f64::from(cells.pow(3))
 }
 
 /// Rings about a pole and sectors of each, for [`chi_square`].
