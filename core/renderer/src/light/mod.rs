@@ -264,9 +264,9 @@ impl Lights {
         mesh.primitive_pdf(primitive as usize, t, cos) * self.choice_probability(from, index)
     }
 
-    /// Calls back, for each lamp the ray meets at a distance in `span`, with its radiance and the pdf per solid angle with which
-    /// [`Lights::sample_direct`] from `from` finds this direction. Lamps do not block. Those hidden from the ray's kind
-    /// (one bit of [`crate::scene::visibility`]) are skipped, as are suns and what `is_delta` stands for.
+    /// Calls back, for each lamp the ray meets at a distance in `span`, with its radiance and the pdf per solid angle
+    /// with which [`Lights::sample_direct`] from `from` finds this direction. Lamps do not block. Those hidden from the
+    /// ray's kind (one bit of [`crate::scene::visibility`]) are skipped, as are suns and what `is_delta` stands for.
     pub fn lamps_crossed(
         &self,
         from: Vec3,
