@@ -49,7 +49,7 @@ impl Session {
         let settings = parse_settings(settings)?;
         let [_, _, width, height] = scene.0.camera.region;
         let shared = Shared {
-            film: Film::new(width, height, settings.film.tile_size),
+            film: Film::new(width, height, &settings.film),
             progress: Progress::default(),
             stats: Mutex::default(),
             ended: Mutex::new(false),
@@ -120,7 +120,7 @@ impl Session {
                 return Err(PyValueError::new_err(message));
             }
         };
-        let [width, height] = film.size().map(|n| n as usize);
+        let [width, height] = film.size();
         let array = Array3::from_shape_vec((height, width, channels).into_shape_with_order(), pixels);
         let array = array.map_err(|e| RenderError::new_err(e.to_string()))?;
         Ok(array.into_pyarray(py))

@@ -8,7 +8,7 @@ use glam::{DVec2, Vec3};
 use crate::accel::{LANES, Packet, Ray};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
-use crate::film::{BLOCK, PixelSums, TileRect};
+use crate::film::{BLOCK, PixelSample, TileRect};
 use crate::lit_scene::{Surface, ray_kind};
 use crate::math::Frame;
 use crate::sampling::{Rng, UNIFORM_HEMISPHERE_PDF, cosine_hemisphere, hash, uniform_hemisphere};
@@ -39,7 +39,7 @@ pub struct Block<'a, 'g> {
     keys: [u64; LANES],
     seeds: [u32; LANES],
     vertices: [Option<Vertex<'a>>; LANES],
-    sums: [PixelSums; LANES],
+    samples: [PixelSample; LANES],
     packet: Packet,
     rays: RayCounts,
 }
@@ -64,7 +64,7 @@ impl<'a, 'g> Block<'a, 'g> {
             keys: [0; LANES],
             seeds: [0; LANES],
             vertices: [const { None }; LANES],
-            sums: [PixelSums::default(); LANES],
+            samples: [PixelSample::default(); LANES],
             packet: Packet::default(),
             rays: RayCounts::default(),
         }
@@ -76,14 +76,14 @@ impl<'a, 'g> Block<'a, 'g> {
     }
 
     /// Computes the pixels of the block whose lowest corner is (x, y) and writes those inside `tile` to `out`.
-    pub fn run(&mut self, x: u32, y: u32, tile: TileRect, out: &mut [PixelSums]) {
+    pub fn run(&mut self, x: u32, y: u32, tile: TileRect, out: &mut [PixelSample]) {
         self.start(x, y);
         self.light();
         self.gather();
         for lane in 0..LANES as u32 {
             let (px, py) = (x + lane % BLOCK, y + lane / BLOCK);
             if px < tile.x + tile.width && py < tile.y + tile.height {
-                out[((py - tile.y) * tile.width + px - tile.x) as usize] = self.sums[lane as usize];
+                out[((py - tile.y) * tile.width + px - tile.x) as usize] = self.samples[lane as usize];
             }
         }
     }
@@ -100,13 +100,15 @@ impl<'a, 'g> Block<'a, 'g> {
             let key = hash(u64::from(g.seed), u64::from(frame_y) << 32 | u64::from(frame_x));
             self.keys[lane] = key;
             self.seeds[lane] = (key >> 32) as u32;
-            self.sums[lane] = PixelSums::default();
+            self.samples[lane] = PixelSample::default();
             self.vertices[lane] = None;
             if px >= camera.region[2] || py >= camera.region[3] {
                 continue;
             }
             let u = g.camera_set.point(self.pass as usize, key as u32);
-            let offset = DVec2::new(f64::from(g.filter.sample(u[0])), f64::from(g.filter.sample(u[1])));
+            let offset = [u[0] - 0.5, u[1] - 0.5];
+            self.samples[lane] = PixelSample { offset, taken: true, ..Default::default() };
+            let offset = DVec2::new(f64::from(offset[0]), f64::from(offset[1]));
             let position = DVec2::new(f64::from(frame_x), f64::from(frame_y)) + 0.5 + offset;
             let (ray, far) = camera_ray(camera, g.lit, position);
             reach[lane] = far;
@@ -130,10 +132,10 @@ impl<'a, 'g> Block<'a, 'g> {
         let transparent_film = g.lit.accel.scene().world.film_transparent;
         for depth in 0..g.max_depth {
             let met = g.meet(ray, first.take(), sampled, &mut rng);
-            let sums = &mut self.sums[lane];
+            let sample = &mut self.samples[lane];
             if met.surface.is_some() || depth > 0 || !transparent_film {
-                sums.direct += throughput * met.light;
-                sums.alpha = 1.0;
+                sample.direct += throughput * met.light;
+                sample.alpha = 1.0;
             }
             let Some(surface) = met.surface else { return };
             throughput *= met.through;
@@ -187,7 +189,7 @@ impl<'a, 'g> Block<'a, 'g> {
                     transmittance(g.lit, shadow, &mut self.rays.shadow)
                 };
                 let share = 1.0 / g.light_samples as f32;
-                self.sums[lane].direct += vertex.throughput * shadow.radiance * seen * share;
+                self.samples[lane].direct += vertex.throughput * shadow.radiance * seen * share;
             }
         }
     }
@@ -241,7 +243,7 @@ impl<'a, 'g> Block<'a, 'g> {
                     let facing = if ray.direction.dot(ng) > 0.0 { -ng } else { ng };
                     let p = ray.origin + ray.direction * hit.t;
                     let irradiance = g.pyramid.irradiance(p, g.pyramid.class(facing), level);
-                    self.sums[lane].indirect += weight * albedo_over_pi * irradiance;
+                    self.samples[lane].indirect += weight * albedo_over_pi * irradiance;
                     return;
                 }
             }
@@ -249,11 +251,11 @@ impl<'a, 'g> Block<'a, 'g> {
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(index) << 16 | 2));
         let sampled = Sampled { pdf: gather_ray.pdf, shares: g.shares, kind: gather_ray.kind };
         let met = g.meet(ray, Some(hit), sampled, &mut rng);
-        let sums = &mut self.sums[lane];
-        sums.direct += weight * met.light * g.direct_share;
+        let sample = &mut self.samples[lane];
+        sample.direct += weight * met.light * g.direct_share;
         if let Some(surface) = met.surface {
             let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };
-            sums.indirect += weight * met.through * g.outgoing(surface, footprint, &mut rng, &mut self.rays);
+            sample.indirect += weight * met.through * g.outgoing(surface, footprint, &mut rng, &mut self.rays);
         }
     }
 }

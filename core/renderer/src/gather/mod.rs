@@ -12,8 +12,8 @@ mod direct;
 mod path;
 
 use std::ops::Range;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
@@ -22,11 +22,11 @@ use crate::accel::Ray;
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::error::RenderError;
-use crate::film::{BLOCK, Film, PixelSums};
+use crate::film::{BLOCK, Film, PixelSample};
 use crate::lit_scene::{LitScene, Surface, ray_kind};
 use crate::progress::Progress;
 use crate::pyramid::Pyramid;
-use crate::sampling::{FilterTable, Rng, StratifiedSet, hash};
+use crate::sampling::{Rng, StratifiedSet, hash};
 use crate::scene::visibility;
 use crate::settings::{GatherSampling, RenderSettings};
 use crate::stats::RayCounts;
@@ -46,7 +46,6 @@ pub struct Gatherer<'a> {
     max_depth: u32,
     retrace_distance: f32,
     sampling: GatherSampling,
-    filter: FilterTable,
     camera_set: StratifiedSet,
     light_set: StratifiedSet,
     gather_set: StratifiedSet,
@@ -83,7 +82,6 @@ impl<'a> Gatherer<'a> {
             max_depth: gather.max_depth,
             retrace_distance: gather.retrace_distance,
             sampling: gather.sampling,
-            filter: FilterTable::new(settings.film.filter, settings.film.filter_width),
             camera_set: set(gather.camera_samples, 1),
             light_set: set(gather.camera_samples * gather.light_samples, 2),
             gather_set: set(gather.rays, 3),
@@ -118,19 +116,21 @@ impl<'a> Gatherer<'a> {
 pub fn run(gatherer: &Gatherer<'_>, film: &Film, progress: &Progress) -> Result<RayCounts, RenderError> {
     let passes = gatherer.camera_samples;
     let (rays, done) = (Mutex::new(RayCounts::default()), AtomicUsize::new(0));
-    let all = film.tile_count() * passes as usize;
+    let tiles = film.tiles().len();
     for pass in 0..passes {
         progress.set_passes(pass, passes);
-        (0..film.tile_count()).into_par_iter().try_for_each(|index| {
+        let finished = (0..tiles).into_par_iter().try_for_each(|index| {
             let counts = run_tile(gatherer, pass, film, index, progress)?;
-            *rays.lock().unwrap_or_else(std::sync::PoisonError::into_inner) += counts;
+            *rays.lock().unwrap_or_else(PoisonError::into_inner) += counts;
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            progress.set_fraction(done as f64 / all as f64);
+            progress.set_fraction(done as f64 / (tiles * passes as usize) as f64);
             Ok::<(), RenderError>(())
-        })?;
+        });
+        film.finish_pass(gatherer.rays_of_pass(pass).len() as u32);
+        finished?;
     }
     progress.set_passes(passes, passes);
-    Ok(rays.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner))
+    Ok(rays.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
 fn run_tile(
@@ -140,17 +140,16 @@ fn run_tile(
     index: usize,
     progress: &Progress,
 ) -> Result<RayCounts, RenderError> {
-    let tile = film.tile(index);
-    let mut sums = vec![PixelSums::default(); (tile.width * tile.height) as usize];
+    let tile = film.tiles()[index];
+    let mut samples = vec![PixelSample::default(); (tile.width * tile.height) as usize];
     let mut block = Block::new(gatherer, pass);
     for y in (tile.y..tile.y + tile.height).step_by(BLOCK as usize) {
         progress.check()?;
         for x in (tile.x..tile.x + tile.width).step_by(BLOCK as usize) {
-            block.run(x, y, tile, &mut sums);
+            block.run(x, y, tile, &mut samples);
         }
     }
-    let rays = gatherer.rays_of_pass(pass).len() as u32;
-    film.add(index, &sums, 1, rays);
+    film.take(index, samples);
     Ok(block.rays())
 }
 

@@ -1,13 +1,11 @@
 //! Random numbers and the maps from the unit square. Everything is a function of ids (pixel, sample, photon), never of
 //! a thread: the same picture comes out however the work is split.
 
-mod filter;
 mod photon;
 mod rng;
 mod stratified;
 mod warp;
 
-pub use filter::FilterTable;
 pub use photon::PhotonSampler;
 pub use rng::{Rng, hash};
 pub use stratified::{LANES, StratifiedSet};
