@@ -29,6 +29,9 @@ def check_settings(settings: dict[str, dict[str, Any]]) -> None:
 def embree_version(embree_library: str) -> str:
     """Version of the Embree library at that path, such as "4.4.0". Raises EmbreeError."""
 
+def trace_floor(scene: Scene, settings: dict[str, dict[str, Any]], embree_library: str) -> dict[str, Any]:
+    """Gather rays of a render traced one by one, without shading: {"rays", "seconds"}. What a gather is measured by."""
+
 @final
 class SceneBuilder:
     """Takes the parts of a scene in any order; `finish` checks them once. Methods return the part's index."""

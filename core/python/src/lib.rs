@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rgp_renderer::embree_version as version_of;
+use rgp_renderer::render;
 use rgp_renderer::settings::RenderSettings;
 
 use errors::to_python;
@@ -33,6 +34,20 @@ fn embree_version(embree_library: PathBuf) -> PyResult<String> {
     Ok(format!("{major}.{minor}.{patch}"))
 }
 
+/// Gather rays of a render traced one by one, without shading, and the seconds that takes.
+#[pyfunction]
+fn trace_floor<'py>(
+    py: Python<'py>,
+    scene: &scene::Scene,
+    settings: &Bound<'_, PyDict>,
+    embree_library: PathBuf,
+) -> PyResult<Bound<'py, PyAny>> {
+    let settings = session::parse_settings(settings)?;
+    let traced =
+        py.detach(|| render::trace_floor(&scene.0, &settings, &embree_library)).map_err(to_python)?;
+    Ok(pythonize::pythonize(py, &traced)?)
+}
+
 #[pymodule]
 fn rgp_core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
@@ -43,6 +58,7 @@ fn rgp_core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(settings_schema, m)?)?;
     m.add_function(wrap_pyfunction!(check_settings, m)?)?;
     m.add_function(wrap_pyfunction!(embree_version, m)?)?;
+    m.add_function(wrap_pyfunction!(trace_floor, m)?)?;
     m.add_class::<scene::SceneBuilder>()?;
     m.add_class::<scene::Scene>()?;
     m.add_class::<session::Session>()

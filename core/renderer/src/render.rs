@@ -10,7 +10,7 @@ use crate::bsdf::{LobeSet, MaterialTable, PreparedMaterial};
 use crate::effects_plan::EffectsPlan;
 use crate::error::RenderError;
 use crate::film::Film;
-use crate::gather::{self, Gatherer};
+use crate::gather::{self, Gatherer, TraceFloor};
 use crate::light::Lights;
 use crate::lit_scene::LitScene;
 use crate::photon_pass;
@@ -34,15 +34,37 @@ pub fn render(
     stats: &mut Stats,
 ) -> Result<(), RenderError> {
     let began = Instant::now();
-    let threads = rayon::ThreadPoolBuilder::new()
-        .num_threads(settings.render.threads as usize)
-        .build()
-        .map_err(|e| RenderError::Internal(format!("no threads: {e}")))?;
-    let result = threads.install(|| passes(scene, settings, library, film, progress, stats));
+    let result = threads(settings)?.install(|| passes(scene, settings, library, film, progress, stats));
     stats.nonfinite_pixels = film.nonfinite();
     stats.passes = progress.snapshot().passes_done;
     stats.seconds.total = began.elapsed().as_secs_f64();
     result
+}
+
+/// Traces the gather rays of a render one by one, without shading: the time no gather of single rays can beat.
+///
+/// # Errors
+/// As [`render`].
+pub fn trace_floor(
+    scene: &Scene,
+    settings: &RenderSettings,
+    library: &Path,
+) -> Result<TraceFloor, RenderError> {
+    let progress = Progress::default();
+    let [_, _, width, height] = scene.camera.region;
+    let film = Film::new(width, height, &settings.film);
+    threads(settings)?.install(|| {
+        let lit = light(scene, settings, library, &progress)?;
+        let layout = layout(&lit, settings);
+        let dark = Accumulator::new(&layout, 0.0, None);
+        let pyramid = Pyramid::build(dark, &layout, settings.pyramid.photons_per_cell, |_, _| true);
+        Ok(gather::trace_floor(&Gatherer::new(&lit, &pyramid, settings), &film))
+    })
+}
+
+fn threads(settings: &RenderSettings) -> Result<rayon::ThreadPool, RenderError> {
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(settings.render.threads as usize);
+    builder.build().map_err(|e| RenderError::Internal(format!("no threads: {e}")))
 }
 
 fn passes(

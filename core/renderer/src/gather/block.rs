@@ -196,31 +196,47 @@ impl<'a, 'g> Block<'a, 'g> {
 
     /// Gather rays of the camera sample.
     fn gather(&mut self) {
-        let g = self.gatherer;
-        for index in g.rays_of_pass(self.pass) {
-            let [x, y] = g.gather_set.points(index as usize, &self.seeds);
-            self.packet.clear();
-            let mut gather_rays: [Option<GatherRay>; LANES] = [None; LANES];
-            for lane in 0..LANES {
-                let Some(vertex) = &self.vertices[lane] else { continue };
-                let ray = g.gather_ray(vertex, [x[lane], y[lane]], self.keys[lane], index);
-                if let Some(ray) = &ray {
-                    let mask = ray.kind | g.lit.accel.lamp_bit();
-                    let leaving = Ray::leaving(vertex.surface.p, vertex.surface.ng, ray.direction, mask);
-                    self.packet.set(lane, &leaving, f32::INFINITY);
-                    self.rays.gather += 1;
-                }
-                gather_rays[lane] = ray;
-            }
+        for index in self.gatherer.rays_of_pass(self.pass) {
+            let gather_rays = self.aim(index);
             if self.packet.is_empty() {
                 continue;
             }
-            g.lit.accel.intersect_packet(&mut self.packet);
+            self.gatherer.lit.accel.intersect_packet(&mut self.packet);
             for (lane, ray) in gather_rays.iter().enumerate() {
                 if let Some(ray) = ray {
                     self.receive(lane, ray, index);
                 }
             }
+        }
+    }
+
+    /// Puts gather ray `index` of every lane into the packet.
+    fn aim(&mut self, index: u32) -> [Option<GatherRay>; LANES] {
+        let g = self.gatherer;
+        let [x, y] = g.gather_set.points(index as usize, &self.seeds);
+        self.packet.clear();
+        let mut gather_rays: [Option<GatherRay>; LANES] = [None; LANES];
+        for lane in 0..LANES {
+            let Some(vertex) = &self.vertices[lane] else { continue };
+            gather_rays[lane] = g.gather_ray(vertex, [x[lane], y[lane]], self.keys[lane], index);
+            if let Some(ray) = &gather_rays[lane] {
+                let mask = ray.kind | g.lit.accel.lamp_bit();
+                let leaving = Ray::leaving(vertex.surface.p, vertex.surface.ng, ray.direction, mask);
+                self.packet.set(lane, &leaving, f32::INFINITY);
+                self.rays.gather += 1;
+            }
+        }
+        gather_rays
+    }
+
+    /// The gather rays that `run` would trace, pixel by pixel within each stratum.
+    pub(super) fn collect_gather_rays(&mut self, x: u32, y: u32, rays: &mut Vec<Ray>) {
+        self.start(x, y);
+        for index in self.gatherer.rays_of_pass(self.pass) {
+            self.aim(index);
+            rays.extend(
+                (0..LANES).filter(|&lane| self.packet.is_set(lane)).map(|lane| self.packet.ray(lane)),
+            );
         }
     }
 
@@ -255,7 +271,8 @@ impl<'a, 'g> Block<'a, 'g> {
         sample.direct += weight * met.light * g.direct_share;
         if let Some(surface) = met.surface {
             let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };
-            sample.indirect += weight * met.through * g.outgoing(surface, footprint, &mut rng, &mut self.rays);
+            sample.indirect +=
+                weight * met.through * g.outgoing(surface, footprint, &mut rng, &mut self.rays);
         }
     }
 }

@@ -9,6 +9,7 @@
 mod block;
 mod camera;
 mod direct;
+mod floor;
 mod path;
 
 use std::ops::Range;
@@ -34,6 +35,7 @@ use crate::stats::RayCounts;
 use block::{Block, widest_stratum};
 use camera::camera_ray;
 use direct::Shares;
+pub use floor::{TraceFloor, trace_floor};
 
 /// What every gather ray needs to know.
 pub struct Gatherer<'a> {

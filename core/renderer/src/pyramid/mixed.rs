@@ -1,0 +1,65 @@
+//! Mixed cells: coarse cells that hold surfaces which do not see each other, such as the floor on both sides of a wall.
+//!
+//! Their mean is the light of neither. They are found by short visibility rays between the parts of a cell, and read from
+//! finer cells instead: no light leaks through walls thicker than a finest cell, and what is hidden (the floor under a
+//! box) does not darken what is not.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::accumulator::CellSum;
+use super::layout::Layout;
+
+/// Visibility rays start this far above the surface (cells): above its own curvature, below what stands on it.
+const LIFT: f32 = 0.25;
+
+/// By level, by place: whether the cell is mixed. `visible` tells whether two points see each other; only cells that hold
+/// light are asked about.
+pub(super) fn mixed_cells(
+    layout: &Layout,
+    sums: &[Vec<CellSum>],
+    visible: &(impl Fn(Vec3, Vec3) -> bool + Sync),
+) -> Vec<Vec<bool>> {
+    let finest = layout.levels.len() - 1;
+    let own = |level: usize, place: usize| layout.levels[level].surfaces[place].centroid();
+    let mut points: Vec<Vec3> =
+        (0..layout.levels[finest].keys.len()).map(|place| own(finest, place)).collect();
+    let mut mixed: Vec<Vec<bool>> = layout.levels.iter().map(|level| vec![false; level.keys.len()]).collect();
+    for level in (1..=finest).rev() {
+        let cells = &layout.levels[level];
+        let parents: Vec<Option<usize>> =
+            (0..cells.keys.len()).map(|place| layout.parent(level, place)).collect();
+        // A cell is represented by the largest of its parts, so that its point lies on a surface.
+        let mut largest: Vec<Option<usize>> = vec![None; layout.levels[level - 1].keys.len()];
+        for (place, parent) in parents.iter().enumerate() {
+            let Some(parent) = *parent else { continue };
+            let area = |place: usize| cells.surfaces[place].area;
+            if largest[parent].is_none_or(|other| area(place) > area(other)) {
+                largest[parent] = Some(place);
+            }
+        }
+        let lift = LIFT * layout.grid.levels[level].cell_size;
+        let lifted =
+            |place: usize| layout.grid.position(points[place] + cells.surfaces[place].mean_normal() * lift);
+        let flags: Vec<AtomicBool> = largest.iter().map(|_| AtomicBool::new(false)).collect();
+        parents.par_iter().enumerate().for_each(|(place, parent)| {
+            let Some(parent) = *parent else { return };
+            if sums[level - 1][parent].count == 0 || flags[parent].load(Ordering::Relaxed) {
+                return;
+            }
+            let Some(largest) = largest[parent] else { return };
+            if mixed[level][place] || (place != largest && !visible(lifted(place), lifted(largest))) {
+                flags[parent].store(true, Ordering::Relaxed);
+            }
+        });
+        mixed[level - 1] = flags.into_iter().map(AtomicBool::into_inner).collect();
+        points = largest
+            .iter()
+            .enumerate()
+            .map(|(place, largest)| largest.map_or_else(|| own(level - 1, place), |child| points[child]))
+            .collect();
+    }
+    mixed
+}

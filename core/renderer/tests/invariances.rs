@@ -1,0 +1,113 @@
+//! What must not change the picture, or change it by a known factor.
+
+mod support;
+
+use glam::DVec3;
+use rgp_renderer::scene::SceneBuilder;
+use support::*;
+
+fn picture(builder: SceneBuilder) -> Picture {
+    finish_and_render(builder, &settings(100_000, 32, 64))
+}
+
+/// Red, green and blue of every pixel, as bits, after multiplication.
+fn bits(picture: &Picture, factor: f32) -> Vec<u32> {
+    let light = picture.combined.chunks(4).flat_map(|pixel| &pixel[..3]);
+    light.chain(&picture.indirect).map(|v| (v * factor).to_bits()).collect()
+}
+
+fn assert_same_bits(one: &[u32], other: &[u32]) {
+    let differing = one.iter().zip(other).filter(|(a, b)| a != b).count();
+    assert_eq!(differing, 0, "differing numbers of {}", one.len());
+}
+
+/// Twice the size at the same watts is a quarter of the irradiance.
+#[test]
+fn size() {
+    let room = Room::default();
+    let one = picture(room.builder());
+    for exponent in [-10, 4] {
+        let scale = 2.0_f64.powi(exponent);
+        let other = picture(Room { scale, ..room.clone() }.builder());
+        assert_same_bits(&bits(&one, 1.0), &bits(&other, (scale * scale) as f32));
+    }
+}
+
+#[test]
+fn brightness() {
+    let room = Room::default();
+    let one = picture(room.builder());
+    for exponent in [-20, 12] {
+        let factor = 2.0_f32.powi(exponent);
+        let other = picture(Room { power: room.power * factor, ..room.clone() }.builder());
+        assert_same_bits(&bits(&one, factor), &bits(&other, 1.0));
+    }
+}
+
+#[test]
+fn order_of_objects_and_triangles() {
+    let room = Room::default();
+    let mut builder = room.equipment();
+    for (mut mesh, material) in room.meshes().into_iter().rev() {
+        mesh.triangles.reverse();
+        place(&mut builder, mesh, &[material]);
+    }
+    assert_same_bits(&bits(&picture(room.builder()), 1.0), &bits(&picture(builder), 1.0));
+}
+
+/// Float coordinates are 6 cm apart there; objects' transforms are not.
+#[test]
+fn distance_from_the_worlds_origin() {
+    let room = Room::default();
+    let one = picture(room.builder());
+    let far = picture(Room { shift: DVec3::new(1e6, -1e6, 3e5), ..room }.builder());
+    assert_same_pictures(&one, &far, 0.003, 0.03);
+}
+
+#[test]
+fn one_lamp_or_two_of_half_the_power() {
+    let room = Room::default();
+    let one = picture(room.builder());
+    let two = picture(Room { lamps: 2, ..room }.builder());
+    assert_same_pictures(&one, &two, 0.003, 0.05);
+}
+
+/// A quarter turn about an axis of the grid permutes its cells.
+#[test]
+fn quarter_turn() {
+    let room = Room::default();
+    let one = picture(room.builder());
+    let mut builder = SceneBuilder::default();
+    let turn = glam::DMat4::from_rotation_z(std::f64::consts::FRAC_PI_2);
+    for (mut mesh, material) in room.meshes() {
+        for p in &mut mesh.positions {
+            *p = [-p[1], p[0], p[2]];
+        }
+        place(&mut builder, mesh, &[material]);
+    }
+    let square = rgp_renderer::scene::LampShape::Rectangle { size: [0.5; 2], spread: std::f32::consts::PI };
+    builder.add_lamp(lamp(square, room.power, DVec3::new(0.0, 0.0, 0.95)));
+    let turned = |x, y, z| turn.transform_point3(DVec3::new(x, y, z));
+    builder.set_camera(camera(turned(-0.8, -0.7, 0.3), turned(0.3, 0.3, -0.3), 0.9, room.pixels));
+    assert_same_pictures(&one, &picture(builder), 0.003, 0.05);
+}
+
+/// Few photons make noise, not another brightness: a rule on a cell's own count would brighten the picture by 15 %.
+#[test]
+fn number_of_photons() {
+    let scene = Room::default().builder().finish().expect("a scene");
+    let many = mean(&render(&scene, &settings(1_000_000, 64, 64)).indirect_radiance());
+    for (photons, tolerance) in [(10_000, 0.03), (100_000, 0.01)] {
+        let few = mean(&render(&scene, &settings(photons, 64, 64)).indirect_radiance());
+        assert_close(few, many, tolerance);
+    }
+}
+
+/// Of the mean, and of the root mean squared difference of pixels, both as parts of the mean.
+fn assert_same_pictures(one: &Picture, other: &Picture, mean_tolerance: f64, pixel_tolerance: f64) {
+    let (a, b) = (one.radiance(), other.radiance());
+    assert_close(mean(&b), mean(&a), mean_tolerance);
+    let squares: Vec<f64> = a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).collect();
+    let rms = mean(&squares).sqrt() / mean(&a);
+    assert!(rms < pixel_tolerance, "pixels differ by {rms:.4} of the mean");
+}

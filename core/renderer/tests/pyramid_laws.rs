@@ -1,0 +1,144 @@
+//! Laws of the pyramid, asked of the pyramid alone: flux is the same on all levels, a constant field is that constant at
+//! every level and place, the order of deposits does not matter.
+
+use glam::{DQuat, DVec3, Vec3};
+use rgp_renderer::color::Rgb;
+use rgp_renderer::pyramid::{Accumulator, Grid, Layout, NormalClasses, Pyramid, SurfaceTriangle};
+
+/// Edge of a finest cell.
+const CELL: f64 = 1.0 / 64.0;
+
+/// The borders of finest cells lie this part of a cell from the world's origin.
+const ANCHOR_OFFSET: f64 = 0.381_966;
+
+/// Finest cells along the square. It begins and ends in the middle of a cell; on the two coarser levels its outer cells
+/// are covered to ¾ and 3/8 of their width: no cell is so empty that its parent is read instead.
+const CELLS: u64 = 27;
+
+const SIDE: f64 = CELLS as f64 * CELL;
+
+/// Three levels over a square from the origin of scene space to (SIDE, SIDE, 0), turned about the origin.
+fn layout(turned: DQuat) -> Layout {
+    let half = 16.0 * CELL;
+    let center = turned * DVec3::new(0.5, 0.5, 0.0) * SIDE;
+    let seen = [center - half, center + half];
+    // The square's corner lies 2½ cells from the lowest corner of a coarsest cell.
+    let world_origin = DVec3::splat(-(2.5 + ANCHOR_OFFSET) * CELL);
+    let grid = Grid::new(seen, seen, 32, world_origin);
+    assert_eq!(grid.levels.len(), 3);
+    let p = |x: f64, y: f64| turned * DVec3::new(x, y, 0.0) * SIDE;
+    let triangles = [[p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0)], [p(0.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)]];
+    let triangle = |i: usize| SurfaceTriangle { corners: triangles[i], glossy: false };
+    Layout::new(grid, NormalClasses::Six, 2, triangle)
+}
+
+/// Photon `i` of `n`², evenly over the square.
+fn position(i: u64, n: u64) -> DVec3 {
+    let at = |k: u64| (k as f64 + 0.5) / n as f64 * SIDE;
+    DVec3::new(at(i % n), at(i / n), 0.0)
+}
+
+/// The pyramid of an even irradiance on the square's upper side, `n`² photons.
+fn constant_field(layout: &Layout, turned: DQuat, irradiance: f64, n: u64, photons_per_cell: u32) -> Pyramid {
+    let accumulator = Accumulator::new(layout, 1.0, None);
+    let flux = Rgb::splat((irradiance * SIDE * SIDE / (n * n) as f64) as f32);
+    for i in 0..n * n {
+        let p = (turned * position(i, n)).as_vec3();
+        assert!(accumulator.deposit(p, (turned * DVec3::Z).as_vec3(), flux).is_some(), "{p} has no cell");
+    }
+    Pyramid::build(accumulator, layout, photons_per_cell)
+}
+
+/// Irradiance of the level's cells times their surface, summed.
+fn flux_of_level(pyramid: &Pyramid, layout: &Layout, level: usize) -> f64 {
+    let (cells, grid) = (&layout.levels[level], &layout.grid.levels[level]);
+    let fluxes = cells.keys.iter().zip(&cells.surfaces).map(|(key, surface)| {
+        let (cell, class) = key.cell(grid);
+        let middle = (grid.lattice(cell).as_dvec3() + 0.5) * f64::from(grid.cell_size);
+        let p = middle - layout.grid.offset_f64(DVec3::ZERO);
+        let irradiance = pyramid.irradiance(p.as_vec3(), class, level);
+        f64::from(irradiance.0[0]) * surface.area as f64 * layout.area_unit
+    });
+    fluxes.sum()
+}
+
+#[test]
+fn flux_is_the_same_on_every_level() {
+    let layout = layout(DQuat::IDENTITY);
+    let accumulator = Accumulator::new(&layout, 1.0, None);
+    // Photons of very different flux.
+    let (n, mut total) = (200, 0.0);
+    for i in 0..n * n {
+        let flux = ((i * 7919 % 1000) as f32 / 1000.0).powi(8) / (n * n) as f32;
+        total += f64::from(flux);
+        accumulator.deposit(position(i, n).as_vec3(), Vec3::Z, Rgb::splat(flux));
+    }
+    assert_eq!((accumulator.deposited(), accumulator.lost()), (n * n, 0));
+    let pyramid = Pyramid::build(accumulator, &layout, 1);
+    for level in 0..3 {
+        let flux = flux_of_level(&pyramid, &layout, level);
+        assert!((flux / total - 1.0).abs() < 1e-6, "level {level}: {flux} of {total}");
+    }
+}
+
+#[test]
+fn a_constant_field_is_that_constant_at_every_level_and_place() {
+    let layout = layout(DQuat::IDENTITY);
+    // Six by six photons in each finest cell, so that three by six lie in those half covered.
+    for photons_per_cell in [1, 16, 1000] {
+        let pyramid = constant_field(&layout, DQuat::IDENTITY, 5.0, 6 * CELLS, photons_per_cell);
+        for level in 0..3 {
+            for i in 0..101 * 101 {
+                let p = position(i, 101).as_vec3();
+                let found = pyramid.irradiance(p, pyramid.class(Vec3::Z), level).0[1];
+                assert!((found / 5.0 - 1.0).abs() < 1e-5, "level {level}, {p}: {found}");
+                let behind = pyramid.irradiance(p, pyramid.class(Vec3::NEG_Z), level);
+                assert!(behind.is_black(), "light behind the square: {behind:?}");
+            }
+        }
+    }
+}
+
+/// A slanted square cuts cells to pieces of every size, slivers among them. With 400 photons to a whole cell an even
+/// set of points counts each piece to some per cent of a whole cell; a cell's face instead of its true surface would be
+/// wrong by tens of per cent.
+#[test]
+fn a_constant_field_on_a_slanted_surface() {
+    let turned = DQuat::from_euler(glam::EulerRot::XYZ, 0.5, 0.3, 0.7);
+    let layout = layout(turned);
+    let normal = (turned * DVec3::Z).as_vec3();
+    let pyramid = constant_field(&layout, turned, 5.0, 20 * CELLS, 16);
+    for (level, most) in [(0, 0.02), (1, 0.05), (2, 0.15)] {
+        let (n, mut sum) = (101, 0.0);
+        for i in 0..n * n {
+            let p = (turned * position(i, n)).as_vec3();
+            let error = pyramid.irradiance(p, pyramid.class(normal), level).0[1] / 5.0 - 1.0;
+            assert!(error.abs() < most, "level {level}, {p}: {error}");
+            sum += f64::from(error);
+        }
+        let mean = sum / (n * n) as f64;
+        assert!(mean.abs() < 1e-3, "level {level}: the mean is off by {mean}");
+    }
+}
+
+#[test]
+fn the_order_of_deposits_does_not_matter() {
+    let layout = layout(DQuat::IDENTITY);
+    let n = 100;
+    let flux = |i: u64| Rgb([1e-6, 1e-3, 1.0].map(|size| size * ((i * 7919 % 1000) as f32).powi(4)));
+    let build = |order: &mut dyn Iterator<Item = u64>| {
+        let accumulator = Accumulator::new(&layout, 1e9, None);
+        for i in order {
+            accumulator.deposit(position(i, n).as_vec3(), Vec3::Z, flux(i));
+        }
+        Pyramid::build(accumulator, &layout, 16)
+    };
+    let (up, down) = (build(&mut (0..n * n)), build(&mut (0..n * n).rev()));
+    for level in 0..3 {
+        for i in 0..n * n {
+            let p = position(i, n).as_vec3();
+            let [a, b] = [&up, &down].map(|pyramid| pyramid.irradiance(p, pyramid.class(Vec3::Z), level));
+            assert_eq!(a, b, "level {level}, {p}");
+        }
+    }
+}
