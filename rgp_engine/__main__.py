@@ -1,8 +1,10 @@
 """`python -m rgp_engine`: the command line."""
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
 from .cli import CommandError, compare, render
 
@@ -25,5 +27,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
+def _leave(exit_code: int) -> NoReturn:
+    """Ends the process at once where Blender is loaded: some versions hang or crash in their exit handlers."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    if "bpy" in sys.modules:
+        os._exit(exit_code)
+    sys.exit(exit_code)
+
+
 if __name__ == "__main__":
-    sys.exit(main())
+    _leave(main())

@@ -138,11 +138,10 @@ def test_problems_and_statistics(scene, monkeypatch):
 
 
 def test_panels_are_hidden_for_other_engines(scene):
+    things = dict.fromkeys(("active_object", "object", "light", "material", "world"), None)
     for module in (render, problems, light, material, scene_parts):
         for cls in module.CLASSES:
-            assert not cls.poll(
-                SimpleNamespace(engine="CYCLES", light=True, material=True, world=True, object=None)
-            )
+            assert not cls.poll(SimpleNamespace(engine="CYCLES", **things))
 
 
 def test_every_panel_is_registered():
