@@ -32,8 +32,8 @@ BESIDE = ((1.0, 0.4, 1.5), (0.2, -1.6, 0.5))
 """In the picture, beside the ball."""
 BEHIND = ((2.2, 5.6, 0.3), CAMERA)
 """In the picture, beyond the floor."""
-REGIONS = {"whole": (0.0, 0.0, 1.0, 1.0), "middle": (0.36, 0.36, 0.64, 0.64)}
-"""Parts of the frame whose means are compared: left, bottom, right, top. The middle shows nothing but the ball."""
+REGIONS = {"whole": (0.0, 0.0, 1.0, 1.0), "ball": (0.21, 0.27, 0.79, 0.84)}
+"""Parts of the frame whose means are compared: left, bottom, right, top. The second holds the ball."""
 
 
 @dataclass(frozen=True)
@@ -84,11 +84,14 @@ Surface = Callable[[bpy.types.NodeTree], bpy.types.NodeSocket]
 """Adds nodes to a tree and returns the shader socket that goes to the output."""
 
 
-def shader(node: str, **sockets: float | common.Color) -> Surface:
-    """One shader node; sockets by name with underscores for spaces."""
+def shader(node: str, distribution: str = "", **sockets: float | common.Color) -> Surface:
+    """One shader node, its distribution of microfacets if not the default, and its sockets by name with underscores
+    for spaces."""
 
     def add(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
         made = tree.nodes.new(f"ShaderNode{node}")
+        if distribution:
+            made.distribution = distribution
         for name, value in sockets.items():
             target = made.inputs[name.replace("_", " ")]
             target.default_value = (*value, 1.0) if isinstance(value, tuple) else value
@@ -124,7 +127,7 @@ MATERIALS: dict[str, Surface] = {
     "glass": shader("BsdfGlass", Color=TINT, Roughness=0.0, IOR=1.45),
     "glass_rough": shader("BsdfGlass", Color=TINT, Roughness=0.4, IOR=1.45),
     "refraction": shader("BsdfRefraction", Color=TINT, Roughness=0.0, IOR=1.45),
-    "refraction_rough": shader("BsdfRefraction", Color=TINT, Roughness=0.4, IOR=1.45),
+    "refraction_rough": shader("BsdfRefraction", "GGX", Color=TINT, Roughness=0.4, IOR=1.45),
     "transparent": shader("BsdfTransparent", Color=(0.8, 0.5, 0.3)),
     "transparent_mix": joined("MixShader", _diffuse, shader("BsdfTransparent"), 0.4),
     "emission": shader("Emission", Color=GOLD, Strength=1.5),

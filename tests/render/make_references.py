@@ -6,7 +6,7 @@ It takes one thread and about forty minutes, most of it for the Cornell box. Wri
 - `cornell_box.exr`, 128 x 128, half floats: the picture (`Combined`) and twice the light that bounced at least twice
   (`Indirect1`, `Indirect2`), from two halves with different seeds;
 - `cornell_box.json`: samples, means, their standard errors and the noise of both halves together;
-- `cases.json`: for every case its mean and standard error, whole picture and middle of the ball.
+- `cases.json`: for every case its mean and standard error, whole picture and ball.
 
 Pixel filter: Blackman-Harris, 1.5 pixels wide, the default of Cycles and of RGP Engine.
 """
@@ -103,7 +103,7 @@ def write_cornell_box(samples_per_half: int, halves: npt.NDArray[np.float64]) ->
 
 
 def make_case(case: str) -> dict[str, object]:
-    """Samples per half, then mean and standard error of one case, whole picture and middle."""
+    """Samples per half, then mean and standard error of one case, whole picture and ball."""
     for samples in CASE_SAMPLES:
         figures, error = render_case(case, samples)
         if error < CASE_ERROR:

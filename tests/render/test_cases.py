@@ -1,4 +1,4 @@
-"""Every lamp and simple material alone against Cycles: means of the whole picture and of the middle of the ball."""
+"""Every lamp and simple material alone against Cycles: means of the whole picture and of the ball."""
 
 import json
 

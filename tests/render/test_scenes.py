@@ -128,6 +128,6 @@ def test_every_case_has_a_precise_reference() -> None:
     references = json.loads((REFERENCES / "cases.json").read_text())["cases"]
     assert list(references) == list(cases.CASES)
     for case, reference in references.items():
-        for region, allowed in (("whole", 0.001), ("middle", 0.005)):
+        for region, allowed in (("whole", 0.001), ("ball", 0.0025)):
             figures = reference[region]
             assert max(figures["standard_error"]) < allowed * np.mean(figures["mean"]), (case, region)
