@@ -97,6 +97,19 @@ fn values_out_of_range_are_clamped_and_reported() {
     assert_eq!(bsdf_support::table(many).problems.len(), 1);
 }
 
+#[test]
+fn grazing_pairs_are_finite() {
+    let grazing = |x: f32| Vec3::new(x, 0.0, 1e-25);
+    for roughness in [0.02, 0.3, 1.0] {
+        let material = prepared(glossy(1.0, roughness));
+        let bsdf = material.bsdf(grazing(1.0), Vec3::Z, Vec3::Z);
+        for x in [-1.0, 1.0] {
+            assert!(bsdf.eval(grazing(x), LobeSet::ALL, RADIANCE).is_finite());
+            assert!(bsdf.pdf(grazing(x), LobeSet::ALL).is_finite());
+        }
+    }
+}
+
 fn any_value() -> impl Strategy<Value = f32> {
     prop_oneof![
         4 => 0.0_f32..=1.0,

@@ -163,6 +163,11 @@ impl PreparedMaterial {
         self.constant_lambert
     }
 
+    /// True when there is no lobe but Lambert's.
+    pub(super) fn is_plain(&self) -> bool {
+        self.closures.is_empty()
+    }
+
     /// Color at normal incidence of the lobes of class [`LobeSet::ROUGH`], at least 0.02. Direction bins hold radiance
     /// divided by it.
     #[must_use]
