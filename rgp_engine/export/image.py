@@ -10,7 +10,7 @@ from .arithmetic import Color
 # Larger images are not worth reading for one color; 8192 x 8192.
 _MAX_PIXELS = 1 << 26
 # Rows and columns that are looked at, evenly spread.
-_MAX_SAMPLES = 512
+_MAX_SAMPLES = 256
 _ENCODED = ("sRGB", "Filmic sRGB")
 
 

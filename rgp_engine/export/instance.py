@@ -40,7 +40,7 @@ def _export_mesh(context: ExportContext, b_instance: Any) -> None:
     # Never keyed by name: instances that geometry nodes make all bear the name of their object.
     key = b_object.data.as_pointer()
     if key not in context.meshes:
-        context.meshes[key] = _add_mesh(context, b_object.data)
+        context.meshes[key] = _add_mesh(context, b_object)
     _report_unsupported(context, b_instance)
     mesh = context.meshes[key]
     if mesh is None:
@@ -54,13 +54,13 @@ def _export_mesh(context: ExportContext, b_instance: Any) -> None:
     )
 
 
-def _add_mesh(context: ExportContext, b_mesh: Any) -> int | None:
-    """Hands an evaluated mesh to the core; None when it has no triangles."""
-    arrays = mesh_arrays(b_mesh)
+def _add_mesh(context: ExportContext, b_object: Any) -> int | None:
+    """Hands an object's mesh to the core, named as the artist sees it; None when it has no triangles."""
+    arrays = mesh_arrays(b_object.data)
     if arrays is None:
         return None
     index: int = context.builder.add_mesh(
-        b_mesh.name,
+        b_object.name,
         arrays.positions,
         arrays.triangles,
         arrays.corner_normals,

@@ -20,7 +20,8 @@ class RGPFilmSettings(bpy.types.PropertyGroup):
     )
     filter_width: bpy.props.FloatProperty(
         name="Filter Width",
-        description="Width of the pixel filter as in Cycles: a box is that wide, Blackman-Harris reaches that far to either side",
+        description="Width of the pixel filter as in Cycles: a box is that wide, "
+        "Blackman-Harris reaches that far to either side",
         default=1.5,
         min=0.1,
         max=10.0,

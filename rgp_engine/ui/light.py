@@ -23,20 +23,50 @@ class RGP_PT_light(_LightPanel, Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        b_light = context.light
-        self.layout.row().prop(b_light, "type", expand=True)
-        # Blender 4.5 brought the second half of these.
-        names = ["color", "use_temperature", "temperature", "energy", "exposure", "normalize"]
-        names += {
-            "POINT": ["use_soft_falloff", "shadow_soft_size"],
-            "SPOT": ["use_soft_falloff", "shadow_soft_size"],
-            "SUN": ["angle"],
-            "AREA": ["shape", "size"],
-        }[b_light.type]
-        if b_light.type == "AREA" and b_light.shape in ("RECTANGLE", "ELLIPSE"):
-            names += ["size_y"]
-        names += ["use_shadow"]
-        draw_settings(self.layout, b_light, *(name for name in names if hasattr(b_light, name)))
+        layout, b_light = self.layout, context.light
+        layout.row().prop(b_light, "type", expand=True)
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        _draw_color(layout.column(), b_light)
+        _draw_power(layout.column(), b_light)
+        _draw_shape(layout.column(), b_light)
+        layout.prop(b_light, "use_shadow", text="Shadow")
+
+
+# Temperature, exposure and normalization came with Blender 4.5.
+
+
+def _draw_color(column: Any, b_light: Any) -> None:
+    has_temperature = hasattr(b_light, "use_temperature")
+    if has_temperature:
+        column.prop(b_light, "use_temperature", text="Use Temperature")
+    if has_temperature and b_light.use_temperature:
+        column.prop(b_light, "temperature")
+        column.prop(b_light, "color", text="Tint")
+    else:
+        column.prop(b_light, "color")
+
+
+def _draw_power(column: Any, b_light: Any) -> None:
+    column.prop(b_light, "energy", text="Strength" if b_light.type == "SUN" else "Power")
+    for name in ("exposure", "normalize"):
+        if hasattr(b_light, name):
+            column.prop(b_light, name)
+
+
+def _draw_shape(column: Any, b_light: Any) -> None:
+    if b_light.type == "SUN":
+        column.prop(b_light, "angle")
+    elif b_light.type == "AREA":
+        column.prop(b_light, "shape")
+        if b_light.shape in ("RECTANGLE", "ELLIPSE"):
+            column.prop(b_light, "size", text="Size X")
+            column.prop(b_light, "size_y", text="Y")
+        else:
+            column.prop(b_light, "size")
+    else:
+        column.prop(b_light, "use_soft_falloff")
+        column.prop(b_light, "shadow_soft_size", text="Radius")
 
 
 class RGP_PT_light_beam(_LightPanel, Panel):
