@@ -90,9 +90,24 @@ fn vertices_that_are_not_numbers() {
 }
 
 #[test]
+fn vertices_no_triangle_uses() {
+    let room = Room::default();
+    let mut builder = room.equipment();
+    for (mut mesh, material) in room.meshes() {
+        mesh.positions.push([1e4, f32::NAN, 3.0]);
+        mesh.positions.push([1e4, 2.0, 3.0]);
+        place(&mut builder, mesh, &[material]);
+    }
+    let (sound, bad) = (finished(room.builder()), finished(builder));
+    assert!(bad.problems.is_empty(), "{:?}", bad.problems);
+    assert!(render(&sound, &few()).combined == render(&bad, &few()).combined);
+}
+
+#[test]
 fn triangles_without_area() {
-    let a = [0.1, 0.2, 0.3];
-    let corners = [a, a, a, a, [0.2, 0.4, 0.6], [0.4, 0.8, 1.2], a, [0.5, 0.2, 0.3], a];
+    // The second lies outside the room, and must not widen it.
+    let a = [0.5, 1.0, 1.5];
+    let corners = [a, a, a, a, [1.0, 2.0, 3.0], [2.0, 4.0, 6.0], a, [0.5, 0.2, 0.3], a];
     assert_harmless(Room::default().builder(), with_triangles(&corners), "box", "without area", 3);
 }
 

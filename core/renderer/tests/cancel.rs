@@ -15,7 +15,7 @@ use support::{Room, library, settings};
 /// Renders a picture that takes minutes, asks to stop as soon as `now` says so, and checks what it left behind.
 fn stop(settings: &RenderSettings, now: impl Fn(&Progress) -> bool + Send + Sync) -> Film {
     let scene = Room { pixels: 256, ..Room::default() }.builder().finish().expect("a scene");
-    let film = Film::new(256, 256, 64);
+    let film = Film::new(256, 256, &settings.film);
     let progress = Progress::default();
     let (result, asked, ended) = std::thread::scope(|scope| {
         let watcher = scope.spawn(|| {

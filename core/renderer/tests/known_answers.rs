@@ -22,10 +22,10 @@ const PIXELS: u32 = 24;
 #[test]
 fn sphere_with_a_lamp_off_its_center() {
     let (albedo, flux) = (0.6, 10.0);
-    let sphere = icosphere(4, 1.0, Vec3::ZERO);
-    let indirect = albedo * flux / ((1.0 - albedo) * area(&sphere));
+    let ball = sphere(5, 1.0, Vec3::ZERO);
+    let indirect = albedo * flux / ((1.0 - albedo) * area(&ball));
     let mut builder = SceneBuilder::default();
-    place(&mut builder, sphere, &[diffuse(albedo as f32)]);
+    place(&mut builder, ball, &[diffuse(albedo as f32)]);
     builder.add_lamp(point_lamp(flux as f32, DVec3::new(0.3, 0.1, 0.55)));
     builder.set_camera(camera(DVec3::new(-0.4, 0.1, 0.0), DVec3::X, 2.0, PIXELS));
     let pixels = finish_and_render(builder, &settings(PHOTONS, RESOLUTION, RAYS)).indirect_radiance();
@@ -39,14 +39,14 @@ fn sphere_with_a_lamp_off_its_center() {
 #[test]
 fn sphere_of_two_albedos() {
     let (above, below, height, flux) = (0.8, 0.2, 0.4_f64, 10.0);
-    let mut sphere = icosphere(4, 1.0, Vec3::ZERO);
-    let lower = |t: &[u32; 3]| t.iter().map(|&v| sphere.positions[v as usize][2]).sum::<f32>() < 0.0;
-    sphere.slots = sphere.triangles.iter().map(|t| u16::from(lower(t))).collect();
+    let mut ball = sphere(5, 1.0, Vec3::ZERO);
+    let lower = |t: &[u32; 3]| t.iter().map(|&v| ball.positions[v as usize][2]).sum::<f32>() < 0.0;
+    ball.slots = ball.triangles.iter().map(|t| u16::from(lower(t))).collect();
     let up = 0.5 * (1.0 + height / (1.0 + height * height).sqrt());
-    let direct = flux / area(&sphere);
+    let direct = flux / area(&ball);
     let indirect = (above * up + below * (1.0 - up)) * direct / (1.0 - 0.5 * (above + below));
     let mut builder = SceneBuilder::default();
-    place(&mut builder, sphere, &[diffuse(above as f32), diffuse(below as f32)]);
+    place(&mut builder, ball, &[diffuse(above as f32), diffuse(below as f32)]);
     builder.add_lamp(point_lamp(flux as f32, DVec3::new(0.0, 0.0, height)));
     builder.set_camera(camera(DVec3::ZERO, DVec3::X, 1.5, PIXELS));
     let pixels = finish_and_render(builder, &settings(PHOTONS, RESOLUTION, RAYS)).indirect_radiance();
@@ -69,8 +69,8 @@ fn concentric_spheres() {
     for (at, radiosity) in [(DVec3::ZERO, inner_radiosity), (DVec3::X, outer_radiosity)] {
         let mut builder = SceneBuilder::default();
         let glowing = emitter(inner as f32, (emitted / PI) as f32);
-        place(&mut builder, icosphere(4, 0.6, Vec3::ZERO), &[glowing]);
-        place(&mut builder, icosphere(4, 1.0, Vec3::ZERO), &[diffuse(outer as f32)]);
+        place(&mut builder, sphere(5, 0.6, Vec3::ZERO), &[glowing]);
+        place(&mut builder, sphere(5, 1.0, Vec3::ZERO), &[diffuse(outer as f32)]);
         builder.set_camera(camera(DVec3::new(0.8, 0.0, 0.0), at, 0.7, PIXELS));
         let pixels = finish_and_render(builder, &settings(PHOTONS, RESOLUTION, RAYS)).radiance();
         assert_close(mean(&pixels), radiosity / PI, 0.01);
@@ -107,8 +107,8 @@ fn dome_on_a_glowing_disk() {
 
 /// The upper half of a sphere, and the disk that closes it exactly.
 fn dome_and_disk() -> (Vec<[Vec3; 3]>, Vec<[Vec3; 3]>) {
-    let sphere = icosphere(5, 1.0, Vec3::ZERO);
-    let faces = sphere.triangles.iter().map(|t| t.map(|v| Vec3::from(sphere.positions[v as usize])));
+    let ball = sphere(5, 1.0, Vec3::ZERO);
+    let faces = ball.triangles.iter().map(|t| t.map(|v| Vec3::from(ball.positions[v as usize])));
     let dome: Vec<_> = faces.filter(|face| face.iter().map(|p| p.z).sum::<f32>() > 0.0).collect();
     let mut rim: Vec<Vec3> = dome.iter().flatten().copied().filter(|p| p.z.abs() < 1e-6).collect();
     rim.sort_by(|a, b| a.y.atan2(a.x).total_cmp(&b.y.atan2(b.x)));
@@ -245,7 +245,7 @@ fn direct_light_of_each_lamp() {
 
 fn assert_floor(mut builder: SceneBuilder, irradiance: f64, what: &str) {
     place(&mut builder, floor(1.0, 0.0), &[diffuse(0.5)]);
-    builder.set_camera(parallel_camera(DVec3::Z, DVec3::ZERO, 0.01, 16));
+    builder.set_camera(parallel_camera(DVec3::Z, DVec3::ZERO, 0.01, 32));
     let mut settings = settings(0, RESOLUTION, RAYS);
     settings.gather.camera_samples = 16;
     let found = mean(&finish_and_render(builder, &settings).radiance()) * PI / 0.5;

@@ -67,14 +67,9 @@ impl MeshArrays {
             retain(&mut self.corner_uvs, &keep);
             retain(&mut self.slots, &keep);
         }
-        let mut unused = 0;
-        for p in &mut self.positions {
-            if !p.iter().all(|v| v.is_finite()) {
-                *p = [0.0; 3];
-                unused += 1;
-            }
-        }
-        if unused > 0 {
+        let mut used = vec![false; self.positions.len()];
+        self.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+        if used.contains(&false) {
             self.drop_unused_vertices();
         }
     }

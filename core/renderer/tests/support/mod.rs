@@ -37,35 +37,22 @@ pub(crate) fn library() -> &'static Path {
     })
 }
 
-/// A sphere of 20 · 4ⁿ triangles, vertices at distance `radius` from `center`.
-pub(crate) fn icosphere(subdivisions: u32, radius: f32, center: Vec3) -> MeshArrays {
-    let g = 0.5 + 1.25_f32.sqrt();
-    let mut vertices: Vec<Vec3> = Vec::new();
-    for (a, b) in [(1.0, g), (-1.0, g), (1.0, -g), (-1.0, -g)] {
-        vertices.extend([Vec3::new(a, b, 0.0), Vec3::new(0.0, a, b), Vec3::new(b, 0.0, a)]);
-    }
-    // Faces join three vertices at the shortest distance, 2.
-    let near = |a: Vec3, b: Vec3| (a.distance(b) - 2.0).abs() < 1e-3;
+/// A sphere of 8 · 4ⁿ triangles, vertices at distance `radius` from `center`; edges lie along the coordinate planes.
+pub(crate) fn sphere(subdivisions: u32, radius: f32, center: Vec3) -> MeshArrays {
     let mut faces = Vec::new();
-    for i in 0..12 {
-        for j in i + 1..12 {
-            for k in j + 1..12 {
-                let [a, b, c] = [vertices[i], vertices[j], vertices[k]];
-                if near(a, b) && near(b, c) && near(c, a) {
-                    let outward = (b - a).cross(c - a).dot(a) > 0.0;
-                    faces.push(if outward { [a, b, c] } else { [a, c, b] }.map(Vec3::normalize));
-                }
+    for x in [Vec3::X, Vec3::NEG_X] {
+        for y in [Vec3::Y, Vec3::NEG_Y] {
+            for z in [Vec3::Z, Vec3::NEG_Z] {
+                faces.push(if x.cross(y).dot(z) > 0.0 { [x, y, z] } else { [x, z, y] });
             }
         }
     }
     for _ in 0..subdivisions {
-        faces = faces
-            .into_iter()
-            .flat_map(|[a, b, c]| {
-                let [ab, bc, ca] = [(a + b).normalize(), (b + c).normalize(), (c + a).normalize()];
-                [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
-            })
-            .collect();
+        let split = |[a, b, c]: [Vec3; 3]| {
+            let [ab, bc, ca] = [(a + b).normalize(), (b + c).normalize(), (c + a).normalize()];
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        };
+        faces = faces.into_iter().flat_map(split).collect();
     }
     soup("sphere", faces.into_iter().map(|face| face.map(|p| center + p * radius)))
 }
@@ -243,7 +230,7 @@ impl Room {
     pub(crate) const WALLS: f32 = 0.7;
 
     pub(crate) fn meshes(&self) -> [(MeshArrays, MaterialRecord); 2] {
-        let ball = icosphere(2, 0.4, Vec3::new(0.2, 0.3, -0.5));
+        let ball = sphere(3, 0.4, Vec3::new(0.2, 0.3, -0.5));
         [(cuboid(Vec3::splat(-1.0), Vec3::splat(1.0)), diffuse(Self::WALLS)), (ball, self.ball.clone())]
     }
 
@@ -299,7 +286,7 @@ pub(crate) struct Picture {
 /// Renders a scene that must render.
 pub(crate) fn render(scene: &Scene, settings: &RenderSettings) -> Picture {
     let [_, _, width, height] = scene.camera.region;
-    let film = Film::new(width, height, settings.film.tile_size);
+    let film = Film::new(width, height, &settings.film);
     let mut stats = Stats::default();
     render::render(scene, settings, library(), &film, &Progress::default(), &mut stats)
         .expect("the scene renders");
