@@ -87,6 +87,17 @@ def test_border_to_the_edge_stays_in_the_frame(scene, export):
     assert (x + width, y + height) == (101, 67)
 
 
+def test_corner_of_the_border_is_rounded_down(scene, export):
+    build.add_camera()
+    scene.render.resolution_x, scene.render.resolution_y = 101, 67
+    scene.render.use_border = True
+    scene.render.border_min_x, scene.render.border_max_x = 0.333, 0.7
+    scene.render.border_min_y, scene.render.border_max_y = 0.206, 0.8
+    x, y, width, height = export().camera["region"]
+    # 33.6, 13.8, 70.7 and 53.6 pixels.
+    assert (x, y, x + width, y + height) == (33, 13, 70, 53)
+
+
 def test_timeline_marker_chooses_the_camera(scene, export):
     build.add_camera((0.0, 0.0, 1.0))
     b_second = build.add_object("Second", bpy.data.cameras.new("Second"), (0.0, 0.0, 2.0))

@@ -337,6 +337,16 @@ def test_hair_is_reported(scene, export, problems):
     assert 'Head: hair "Fur" is not supported yet; left out' in problems()
 
 
+def test_hidden_emitter_of_hair_is_left_out(scene, export):
+    """Blender goes through it all the same, for the sake of its hair."""
+    build.add_camera()
+    b_object = build.add_object("Head", build.quad())
+    b_object.modifiers.new("Fur", "PARTICLE_SYSTEM")
+    b_object.particle_systems[0].settings.type = "HAIR"
+    b_object.show_instancer_for_render = False
+    assert names(export()) == []
+
+
 def test_curves_objects_are_reported(scene, export, problems):
     build.add_camera()
     build.add_object("Hair", bpy.data.hair_curves.new("Hair"))
