@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::accel::{Accel, Hit, Ray};
-use crate::bsdf::{Bsdf, BsdfSample, LobeSet, PreparedMaterial};
+use crate::bsdf::{Bsdf, BsdfSample, LobeSet, PreparedMaterial, ShadingFrame};
 use crate::effects_plan::EffectsPlan;
 use crate::light::Lights;
 use crate::scene::visibility;
@@ -42,6 +42,12 @@ impl<'a> LitScene<'a> {
         let material = &self.materials[self.accel.material(hit.object, hit.primitive)];
         let bsdf = material.bsdf(-ray.direction, ng, ns);
         Surface { p: ray.origin + ray.direction * hit.t, ng, bsdf, hit }
+    }
+
+    /// Normals at a hit whose geometric normal is known, on the side the ray came from.
+    #[must_use]
+    pub fn frame(&self, ray: &Ray, hit: &Hit, ng: Vec3) -> ShadingFrame {
+        ShadingFrame::new(-ray.direction, ng, self.accel.shading_normal(hit))
     }
 
     /// A ray that starts where it enters the bounds of all there is to meet: far-off origins cost no precision. Also gives how far the

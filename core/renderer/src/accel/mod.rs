@@ -210,6 +210,17 @@ impl<'a> Accel<'a> {
         }
     }
 
+    /// Unit geometric normal and material of a triangle, in one look.
+    #[must_use]
+    #[inline]
+    pub fn triangle(&self, object: u32, primitive: u32) -> (Vec3, usize) {
+        if let ObjectRecord::Flat(first) = &self.objects[object as usize] {
+            let record = &self.records[first + primitive as usize];
+            return (record.ng, record.material as usize);
+        }
+        (self.geometric_normal(object, primitive), self.material(object, primitive))
+    }
+
     /// Index into [`Scene::materials`].
     #[must_use]
     #[inline]

@@ -50,6 +50,25 @@ impl Packet {
         self.valid[lane] = -1;
     }
 
+    /// Sets every lane from arrays: origins and directions by axis. Lanes that are not `set` stay out.
+    #[inline]
+    pub fn set_all(
+        &mut self,
+        origins: &[[f32; LANES]; 3],
+        directions: &[[f32; LANES]; 3],
+        set: &[bool; LANES],
+        mask: u32,
+    ) {
+        let rays = &mut self.rays.ray;
+        [rays.org_x, rays.org_y, rays.org_z] = *origins;
+        [rays.dir_x, rays.dir_y, rays.dir_z] = *directions;
+        rays.t_near = [0.0; LANES];
+        rays.t_far = [f32::INFINITY; LANES];
+        rays.time = [0.0; LANES];
+        rays.mask = [mask; LANES];
+        self.valid = set.map(|set| -i32::from(set));
+    }
+
     /// True where the lane is set.
     #[must_use]
     pub const fn is_set(&self, lane: usize) -> bool {

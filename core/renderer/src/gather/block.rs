@@ -1,68 +1,54 @@
 //! Sixteen pixels at a time: one camera sample each, their shadow rays, and their gather rays stratum by stratum, so that
 //! the rays of a packet stay together.
 
-use std::f32::consts::{FRAC_1_PI, PI};
+use std::f32::consts::PI;
 
 use glam::{DVec2, Vec3};
 
-use crate::accel::{LANES, Packet, Ray};
+use crate::accel::{Hit, LANES, Packet, Ray};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::film::{BLOCK, PixelSample, TileRect};
-use crate::lit_scene::{Surface, ray_kind};
-use crate::math::Frame;
-use crate::sampling::{Rng, UNIFORM_HEMISPHERE_PDF, cosine_hemisphere, hash, uniform_hemisphere};
+use crate::lit_scene::ray_kind;
+use crate::sampling::{Rng, hash};
 use crate::scene::visibility;
 use crate::settings::GatherSampling;
 use crate::stats::RayCounts;
 
 use super::Gatherer;
 use super::camera::camera_ray;
-use super::direct::{ShadowRay, Shares, shadow_ray, transmittance};
+use super::direct::{ShadowRay, Shares, lambert_shadow_ray, shadow_ray, transmittance};
+use super::lambert::LambertLanes;
 use super::path::{Footprint, Sampled};
-
-/// Where a camera sample is shaded.
-struct Vertex<'a> {
-    surface: Surface<'a>,
-    /// Share of its light that reaches the camera.
-    throughput: Rgb,
-    frame: Frame,
-    /// The albedo, where the surface is a constant Lambert reflector.
-    lambert: Option<Rgb>,
-}
+use super::vertex::{GatherRay, Vertex, rotate};
 
 /// Work on one block of pixels.
-pub struct Block<'a, 'g> {
+pub(super) struct Block<'a, 'g> {
     gatherer: &'g Gatherer<'a>,
     /// Number of the camera sample, which is the number of the pass.
     pass: u32,
     keys: [u64; LANES],
     seeds: [u32; LANES],
-    vertices: [Option<Vertex<'a>>; LANES],
+    /// Camera samples on constant Lambert surfaces, and on all others.
+    lambert: LambertLanes,
+    vertices: [Option<Box<Vertex<'a>>>; LANES],
     samples: [PixelSample; LANES],
     packet: Packet,
     rays: RayCounts,
 }
 
-/// A direction to gather from.
-#[derive(Clone, Copy)]
-struct GatherRay {
-    direction: Vec3,
-    /// f · cos / pdf.
-    weight: Rgb,
-    pdf: Option<f32>,
-    kind: u32,
-    sharp: bool,
-}
+/// Gather rays that did not start on a constant Lambert surface.
+type OtherRays = [Option<GatherRay>; LANES];
 
 impl<'a, 'g> Block<'a, 'g> {
     /// An idle block.
-    pub fn new(gatherer: &'g Gatherer<'a>, pass: u32) -> Self {
+    pub(super) fn new(gatherer: &'g Gatherer<'a>, pass: u32) -> Self {
         Self {
             gatherer,
             pass,
             keys: [0; LANES],
             seeds: [0; LANES],
+            lambert: LambertLanes::default(),
             vertices: [const { None }; LANES],
             samples: [PixelSample::default(); LANES],
             packet: Packet::default(),
@@ -71,15 +57,17 @@ impl<'a, 'g> Block<'a, 'g> {
     }
 
     /// Rays traced so far.
-    pub const fn rays(&self) -> RayCounts {
+    pub(super) const fn rays(&self) -> RayCounts {
         self.rays
     }
 
     /// Computes the pixels of the block whose lowest corner is (x, y) and writes those inside `tile` to `out`.
-    pub fn run(&mut self, x: u32, y: u32, tile: TileRect, out: &mut [PixelSample]) {
+    pub(super) fn run(&mut self, x: u32, y: u32, tile: TileRect, out: &mut [PixelSample]) {
         self.start(x, y);
-        self.light();
-        self.gather();
+        if self.lambert.any() || self.vertices.iter().any(Option::is_some) {
+            self.light();
+            self.gather();
+        }
         for lane in 0..LANES as u32 {
             let (px, py) = (x + lane % BLOCK, y + lane / BLOCK);
             if px < tile.x + tile.width && py < tile.y + tile.height {
@@ -93,7 +81,7 @@ impl<'a, 'g> Block<'a, 'g> {
         let g = self.gatherer;
         let camera = &g.lit.accel.scene().camera;
         self.packet.clear();
-        let mut reach = [0.0; LANES];
+        self.lambert.clear();
         for lane in 0..LANES {
             let (px, py) = (x + lane as u32 % BLOCK, y + lane as u32 / BLOCK);
             let (frame_x, frame_y) = (camera.region[0] + px, camera.region[1] + py);
@@ -111,24 +99,40 @@ impl<'a, 'g> Block<'a, 'g> {
             let offset = DVec2::new(f64::from(offset[0]), f64::from(offset[1]));
             let position = DVec2::new(f64::from(frame_x), f64::from(frame_y)) + 0.5 + offset;
             let (ray, far) = camera_ray(camera, g.lit, position);
-            reach[lane] = far;
             self.packet.set(lane, &ray, far);
         }
         g.lit.accel.intersect_packet(&mut self.packet);
         for lane in 0..LANES {
             if self.packet.is_set(lane) {
                 self.rays.camera += 1;
-                self.follow_camera(lane);
+                let (ray, hit) = (self.packet.ray(lane), self.packet.hit(lane));
+                if !self.start_lambert(lane, &ray, hit) {
+                    self.follow_camera(lane, ray, hit);
+                }
             }
         }
     }
 
-    fn follow_camera(&mut self, lane: usize) {
+    /// Takes the common case: the camera sees a surface that is nothing but a constant Lambert reflector.
+    fn start_lambert(&mut self, lane: usize, ray: &Ray, hit: Option<Hit>) -> bool {
+        let g = self.gatherer;
+        let Some(hit) = hit.filter(|hit| !g.lit.accel.is_lamp(hit.object)) else { return false };
+        let (ng, material) = g.lit.accel.triangle(hit.object, hit.primitive);
+        let Some(albedo_over_pi) = g.plain[material].filter(|_| g.sampling == GatherSampling::Cosine) else {
+            return false;
+        };
+        let frame = g.lit.frame(ray, &hit, ng);
+        let p = ray.origin + ray.direction * hit.t;
+        self.lambert.put(lane, p, frame.ng, frame.ns, albedo_over_pi * PI);
+        self.samples[lane].alpha = 1.0;
+        true
+    }
+
+    fn follow_camera(&mut self, lane: usize, mut ray: Ray, hit: Option<Hit>) {
         let g = self.gatherer;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.pass) << 16 | 1));
         let mut sampled = Sampled { pdf: None, shares: Shares::EVEN, kind: visibility::CAMERA };
-        let (mut ray, mut first) = (self.packet.ray(lane), Some(self.packet.hit(lane)));
-        let mut throughput = Rgb::WHITE;
+        let (mut first, mut throughput) = (Some(hit), Rgb::WHITE);
         let transparent_film = g.lit.accel.scene().world.film_transparent;
         for depth in 0..g.max_depth {
             let met = g.meet(ray, first.take(), sampled, &mut rng);
@@ -140,9 +144,7 @@ impl<'a, 'g> Block<'a, 'g> {
             let Some(surface) = met.surface else { return };
             throughput *= met.through;
             if surface.bsdf.has(LobeSet::NON_DELTA) {
-                let lambert = g.lambert_of(&surface);
-                let frame = Frame::new(surface.bsdf.frame.ns);
-                self.vertices[lane] = Some(Vertex { surface, throughput, frame, lambert });
+                self.vertices[lane] = Some(Box::new(Vertex { surface, throughput }));
                 return;
             }
             let sample =
@@ -158,7 +160,7 @@ impl<'a, 'g> Block<'a, 'g> {
     /// Direct light: shadow rays of the camera sample.
     fn light(&mut self) {
         let g = self.gatherer;
-        if !g.lit.plan.direct || self.vertices.iter().all(Option::is_none) {
+        if !g.lit.plan.direct {
             return;
         }
         for i in 0..g.light_samples {
@@ -167,13 +169,9 @@ impl<'a, 'g> Block<'a, 'g> {
             self.packet.clear();
             let mut shadows: [Option<ShadowRay>; LANES] = [None; LANES];
             for lane in 0..LANES {
-                let Some(vertex) = &self.vertices[lane] else { continue };
-                let choice = rotate(self.keys[lane], index);
-                let sample = g.lit.lights.sample_direct(vertex.surface.p, [choice, x[lane], y[lane]]);
-                shadows[lane] = sample.and_then(|s| shadow_ray(&vertex.surface, &s, LobeSet::ALL, g.shares));
-                if let Some(shadow) =
-                    shadows[lane].as_ref().filter(|s| s.casts_shadow && !g.lit.plan.transparency)
-                {
+                shadows[lane] = self.shadow(lane, [rotate(self.keys[lane], index), x[lane], y[lane]]);
+                let traced = shadows[lane].as_ref().filter(|s| s.casts_shadow && !g.lit.plan.transparency);
+                if let Some(shadow) = traced {
                     self.packet.set(lane, &shadow.ray, shadow.t_far);
                     self.rays.shadow += 1;
                 }
@@ -182,51 +180,74 @@ impl<'a, 'g> Block<'a, 'g> {
                 g.lit.accel.occluded_packet(&mut self.packet);
             }
             for (lane, shadow) in shadows.iter().enumerate() {
-                let (Some(shadow), Some(vertex)) = (shadow, &self.vertices[lane]) else { continue };
-                let seen = if self.packet.is_set(lane) {
-                    if self.packet.is_free(lane) { Rgb::WHITE } else { Rgb::BLACK }
-                } else {
+                let Some(shadow) = shadow else { continue };
+                let seen = if !self.packet.is_set(lane) {
                     transmittance(g.lit, shadow, &mut self.rays.shadow)
+                } else if self.packet.is_free(lane) {
+                    Rgb::WHITE
+                } else {
+                    continue;
                 };
-                let share = 1.0 / g.light_samples as f32;
-                self.samples[lane].direct += vertex.throughput * shadow.radiance * seen * share;
+                self.samples[lane].direct += shadow.radiance * seen * g.per_light_sample;
             }
         }
+    }
+
+    /// A shadow ray of one lane, its radiance as the camera sees it.
+    fn shadow(&self, lane: usize, u: [f32; 3]) -> Option<ShadowRay> {
+        let g = self.gatherer;
+        if self.lambert.set[lane] {
+            let sample = g.lit.lights.sample_direct(self.lambert.p[lane], u)?;
+            return lambert_shadow_ray(&self.lambert, lane, &sample, g.shares);
+        }
+        let vertex = self.vertices[lane].as_ref()?;
+        let sample = g.lit.lights.sample_direct(vertex.surface.p, u)?;
+        let mut shadow = shadow_ray(&vertex.surface, &sample, LobeSet::ALL, g.shares)?;
+        shadow.radiance *= vertex.throughput;
+        Some(shadow)
     }
 
     /// Gather rays of the camera sample.
     fn gather(&mut self) {
         for index in self.gatherer.rays_of_pass(self.pass) {
-            let gather_rays = self.aim(index);
-            if self.packet.is_empty() {
-                continue;
-            }
+            let (pdfs, others) = self.aim(index);
             self.gatherer.lit.accel.intersect_packet(&mut self.packet);
-            for (lane, ray) in gather_rays.iter().enumerate() {
-                if let Some(ray) = ray {
+            for lane in 0..LANES {
+                if !self.packet.is_set(lane) {
+                    continue;
+                }
+                self.rays.gather += 1;
+                if let Some(ray) = &others[lane] {
                     self.receive(lane, ray, index);
+                } else {
+                    let weight = self.lambert.weight[lane];
+                    let pdf = Some(pdfs[lane]);
+                    self.receive(lane, &GatherRay::diffuse(weight, pdf), index);
                 }
             }
         }
     }
 
-    /// Puts gather ray `index` of every lane into the packet.
-    fn aim(&mut self, index: u32) -> [Option<GatherRay>; LANES] {
+    /// Puts gather ray `index` of every lane into the packet; gives the densities of those that start on constant Lambert
+    /// surfaces, and all about the others.
+    fn aim(&mut self, index: u32) -> ([f32; LANES], OtherRays) {
         let g = self.gatherer;
-        let [x, y] = g.gather_set.points(index as usize, &self.seeds);
-        self.packet.clear();
-        let mut gather_rays: [Option<GatherRay>; LANES] = [None; LANES];
+        let points = g.gather_set.points(index as usize, &self.seeds);
+        let lamps = g.lit.accel.lamp_bit();
+        let pdfs = self.lambert.aim(points, visibility::DIFFUSE | lamps, &mut self.packet);
+        let mut others: OtherRays = [None; LANES];
         for lane in 0..LANES {
             let Some(vertex) = &self.vertices[lane] else { continue };
-            gather_rays[lane] = g.gather_ray(vertex, [x[lane], y[lane]], self.keys[lane], index);
-            if let Some(ray) = &gather_rays[lane] {
-                let mask = ray.kind | g.lit.accel.lamp_bit();
-                let leaving = Ray::leaving(vertex.surface.p, vertex.surface.ng, ray.direction, mask);
-                self.packet.set(lane, &leaving, f32::INFINITY);
-                self.rays.gather += 1;
-            }
+            let u = [points[0][lane], points[1][lane]];
+            let Some((ray, direction)) = vertex.gather_ray(u, rotate(self.keys[lane], index), g.sampling)
+            else {
+                continue;
+            };
+            let leaving = Ray::leaving(vertex.surface.p, vertex.surface.ng, direction, ray.kind | lamps);
+            self.packet.set(lane, &leaving, f32::INFINITY);
+            others[lane] = Some(ray);
         }
-        gather_rays
+        (pdfs, others)
     }
 
     /// The gather rays that `run` would trace, pixel by pixel within each stratum.
@@ -241,32 +262,37 @@ impl<'a, 'g> Block<'a, 'g> {
     }
 
     /// Adds what one gather ray brings.
+    #[inline]
     fn receive(&mut self, lane: usize, gather_ray: &GatherRay, index: u32) {
         let g = self.gatherer;
-        let Some(vertex) = &self.vertices[lane] else { return };
         let hit = self.packet.hit(lane);
-        let weight = vertex.throughput * gather_ray.weight;
         let solid_angle = gather_ray.pdf.map_or(0.0, |pdf| (g.per_ray / pdf).min(g.widest));
-        let ray = self.packet.ray(lane);
-        if let Some(hit) = hit
-            && !g.lit.accel.is_lamp(hit.object)
-        {
-            let material = g.lit.accel.material(hit.object, hit.primitive);
-            if let Some(albedo_over_pi) = g.plain[material].filter(|_| !gather_ray.sharp) {
-                let level = g.pyramid.level_for(solid_angle * hit.t * hit.t);
-                if hit.t >= g.retrace_distance * g.pyramid.nominal_cell_size(level) {
-                    let ng = g.lit.accel.geometric_normal(hit.object, hit.primitive);
-                    let facing = if ray.direction.dot(ng) > 0.0 { -ng } else { ng };
-                    let p = ray.origin + ray.direction * hit.t;
-                    let irradiance = g.pyramid.irradiance(p, g.pyramid.class(facing), level);
-                    self.samples[lane].indirect += weight * albedo_over_pi * irradiance;
-                    return;
-                }
-            }
+        let read = hit.filter(|_| !gather_ray.sharp).and_then(|hit| {
+            let ray = self.packet.ray(lane);
+            g.look_up_lambert(ray.origin, ray.direction, &hit, solid_angle)
+        });
+        if let Some(radiance) = read {
+            self.samples[lane].indirect += gather_ray.weight * radiance;
+        } else {
+            self.receive_other(lane, gather_ray, hit, solid_angle, index);
         }
+    }
+
+    /// As `receive`, for rays that meet light or anything but a constant Lambert surface, or are too short to be read.
+    #[inline(never)]
+    fn receive_other(
+        &mut self,
+        lane: usize,
+        gather_ray: &GatherRay,
+        hit: Option<Hit>,
+        solid_angle: f32,
+        index: u32,
+    ) {
+        let g = self.gatherer;
+        let weight = gather_ray.weight;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(index) << 16 | 2));
         let sampled = Sampled { pdf: gather_ray.pdf, shares: g.shares, kind: gather_ray.kind };
-        let met = g.meet(ray, Some(hit), sampled, &mut rng);
+        let met = g.meet(self.packet.ray(lane), Some(hit), sampled, &mut rng);
         let sample = &mut self.samples[lane];
         sample.direct += weight * met.light * g.direct_share;
         if let Some(surface) = met.surface {
@@ -278,48 +304,25 @@ impl<'a, 'g> Block<'a, 'g> {
 }
 
 impl Gatherer<'_> {
-    fn gather_ray(&self, vertex: &Vertex<'_>, u: [f32; 2], key: u64, index: u32) -> Option<GatherRay> {
-        let bsdf = &vertex.surface.bsdf;
-        let uniform = self.sampling == GatherSampling::Uniform && !bsdf.has(LobeSet::SHARP | LobeSet::DELTA);
-        if uniform {
-            let direction = vertex.frame.from_local(uniform_hemisphere(u));
-            let f = bsdf.eval(direction, LobeSet::ALL, TransportMode::Radiance);
-            let weight = f * (direction.dot(bsdf.frame.ns).abs() / UNIFORM_HEMISPHERE_PDF);
-            let kind = visibility::DIFFUSE;
-            return Some(GatherRay {
-                direction,
-                weight,
-                pdf: Some(UNIFORM_HEMISPHERE_PDF),
-                kind,
-                sharp: false,
-            });
+    /// Radiance from a hit on a constant Lambert surface, read from the pyramid; `None` where there is more to it.
+    #[inline]
+    fn look_up_lambert(&self, origin: Vec3, direction: Vec3, hit: &Hit, solid_angle: f32) -> Option<Rgb> {
+        if self.lit.accel.is_lamp(hit.object) {
+            return None;
         }
-        if let Some(albedo) = vertex.lambert {
-            let local = cosine_hemisphere(u);
-            let direction = vertex.frame.from_local(local);
-            let above = direction.dot(bsdf.frame.ng) > 0.0 && local.z > 0.0;
-            let pdf = Some(local.z * FRAC_1_PI);
-            let kind = visibility::DIFFUSE;
-            return above.then_some(GatherRay { direction, weight: albedo, pdf, kind, sharp: false });
+        let (ng, material) = self.lit.accel.triangle(hit.object, hit.primitive);
+        let albedo_over_pi = self.plain[material]?;
+        let level = self.pyramid.level_for(solid_angle * hit.t * hit.t);
+        if hit.t < self.retrace_distance * self.pyramid.nominal_cell_size(level) {
+            return None;
         }
-        let sample = bsdf.sample(rotate(key, index), u, LobeSet::ALL, TransportMode::Radiance)?;
-        Some(GatherRay {
-            direction: sample.wi,
-            weight: sample.weight,
-            pdf: (!sample.is_delta).then_some(sample.pdf_solid_angle),
-            kind: ray_kind(&sample),
-            sharp: (LobeSet::SHARP | LobeSet::DELTA).intersects(sample.class),
-        })
+        let facing = if direction.dot(ng) > 0.0 { -ng } else { ng };
+        let p = origin + direction * hit.t;
+        Some(albedo_over_pi * self.pyramid.irradiance(p, self.pyramid.class(facing), level))
     }
 }
 
-/// A pixel's own additive recurrence with the golden ratio: evenly spread in one dimension.
-fn rotate(key: u64, index: u32) -> f32 {
-    let golden = index.wrapping_mul(0x9E37_79B9);
-    (((key as u32) ^ 0x5bd1_e995).wrapping_add(golden) >> 8) as f32 * (1.0 / 16_777_216.0)
-}
-
 /// The widest solid angle a stratum of `rays` cosine-distributed rays covers: the outermost, at the horizon.
-pub fn widest_stratum(rays: u32) -> f32 {
+pub(super) fn widest_stratum(rays: u32) -> f32 {
     2.0 * PI / (rays as f32).powf(0.75)
 }

@@ -1,5 +1,7 @@
 //! Next-event estimation: light that comes straight from a lamp or an emissive mesh.
 
+use std::f32::consts::FRAC_1_PI;
+
 use crate::accel::{OFFSET, Ray};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
@@ -8,45 +10,47 @@ use crate::lit_scene::{LitScene, Surface, lobes_lit};
 use crate::sampling::balance_heuristic;
 use crate::scene::visibility;
 
+use super::lambert::LambertLanes;
+
 /// Transparent surfaces a shadow ray passes before it counts as blocked.
 const MAX_TRANSPARENT: u32 = 64;
 
 /// How many directions two competing techniques draw: lights sampled, and directions of the BSDF.
 #[derive(Clone, Copy, Debug)]
-pub struct Shares {
+pub(super) struct Shares {
     /// Directions towards lights.
-    pub light: f32,
+    pub(super) light: f32,
     /// Directions of the BSDF.
-    pub bsdf: f32,
+    pub(super) bsdf: f32,
 }
 
 impl Shares {
     /// One of each.
-    pub const EVEN: Self = Self { light: 1.0, bsdf: 1.0 };
+    pub(super) const EVEN: Self = Self { light: 1.0, bsdf: 1.0 };
 
     /// Weight of light met by a BSDF sample of density `pdf`, which next-event estimation finds with `pdf_light`.
     #[must_use]
-    pub fn of_bsdf(self, pdf: f32, pdf_light: f32) -> f32 {
+    pub(super) fn of_bsdf(self, pdf: f32, pdf_light: f32) -> f32 {
         balance_heuristic(self.bsdf * pdf, self.light * pdf_light)
     }
 }
 
 /// A shadow ray and what arrives if nothing blocks it.
 #[derive(Clone, Copy, Debug)]
-pub struct ShadowRay {
+pub(super) struct ShadowRay {
     /// From the surface to the light.
-    pub ray: Ray,
+    pub(super) ray: Ray,
     /// Where the light is.
-    pub t_far: f32,
+    pub(super) t_far: f32,
     /// Radiance towards the viewer if the light is seen, weighted against BSDF samples.
-    pub radiance: Rgb,
+    pub(super) radiance: Rgb,
     /// False: the light passes through everything.
-    pub casts_shadow: bool,
+    pub(super) casts_shadow: bool,
 }
 
 /// The shadow ray for a light sample; `None` where the surface does not send this light to the viewer.
 #[must_use]
-pub fn shadow_ray(
+pub(super) fn shadow_ray(
     surface: &Surface<'_>,
     sample: &DirectSample,
     lobes: LobeSet,
@@ -70,6 +74,29 @@ pub fn shadow_ray(
     Some(ShadowRay { ray, t_far: reach(sample.distance), radiance, casts_shadow: sample.casts_shadow })
 }
 
+/// As [`shadow_ray`], for a camera sample on a constant Lambert surface; the radiance is what the camera sees.
+pub(super) fn lambert_shadow_ray(
+    lanes: &LambertLanes,
+    lane: usize,
+    sample: &DirectSample,
+    shares: Shares,
+) -> Option<ShadowRay> {
+    let cos = sample.wi.dot(lanes.ns[lane]);
+    let above = cos > 0.0 && sample.wi.dot(lanes.ng[lane]) > 0.0;
+    if !above || sample.visibility & visibility::DIFFUSE == 0 {
+        return None;
+    }
+    let pdf = cos * FRAC_1_PI;
+    let weight = if sample.is_delta {
+        1.0
+    } else {
+        balance_heuristic(shares.light * sample.pdf_solid_angle, shares.bsdf * pdf)
+    };
+    let radiance = lanes.weight[lane] * sample.radiance_over_pdf * (pdf * weight);
+    let ray = Ray::leaving(lanes.p[lane], lanes.ng[lane], sample.wi, visibility::SHADOW);
+    Some(ShadowRay { ray, t_far: reach(sample.distance), radiance, casts_shadow: sample.casts_shadow })
+}
+
 /// A shadow ray ends before the light's own surface.
 fn reach(distance: f32) -> f32 {
     (distance * (1.0 - 1e-5) - 4.0 * OFFSET).max(0.0)
@@ -77,7 +104,7 @@ fn reach(distance: f32) -> f32 {
 
 /// Share of light that reaches the end of a shadow ray through transparent surfaces.
 #[must_use]
-pub fn transmittance(lit: &LitScene<'_>, shadow: &ShadowRay, rays: &mut u64) -> Rgb {
+pub(super) fn transmittance(lit: &LitScene<'_>, shadow: &ShadowRay, rays: &mut u64) -> Rgb {
     if !shadow.casts_shadow {
         return Rgb::WHITE;
     }

@@ -10,7 +10,9 @@ mod block;
 mod camera;
 mod direct;
 mod floor;
+mod lambert;
 mod path;
+mod vertex;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -53,6 +55,8 @@ pub struct Gatherer<'a> {
     gather_set: StratifiedSet,
     /// Of a pixel: light samples against gather rays.
     shares: Shares,
+    /// 1 / light samples.
+    per_light_sample: f32,
     /// 1 / rays.
     per_ray: f32,
     /// Camera samples per gather ray: the direct light a gather ray finds belongs to a sum over camera samples.
@@ -91,6 +95,7 @@ impl<'a> Gatherer<'a> {
                 light: (gather.camera_samples * gather.light_samples) as f32,
                 bsdf: gather.rays as f32,
             },
+            per_light_sample: 1.0 / gather.light_samples as f32,
             per_ray: 1.0 / gather.rays as f32,
             direct_share: gather.camera_samples as f32 / gather.rays as f32,
             widest: widest_stratum(gather.rays),
@@ -103,11 +108,6 @@ impl<'a> Gatherer<'a> {
         let first =
             |pass: u32| (u64::from(pass) * u64::from(self.rays) / u64::from(self.camera_samples)) as u32;
         first(pass)..first(pass + 1)
-    }
-
-    fn lambert_of(&self, surface: &Surface<'_>) -> Option<Rgb> {
-        let material = self.lit.accel.material(surface.hit.object, surface.hit.primitive);
-        self.lit.materials[material].constant_lambert()
     }
 }
 
