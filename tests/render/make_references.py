@@ -1,7 +1,7 @@
 """Makes the references of the render tests with Cycles: `python -m tests.render.make_references [WHAT ...]`.
 
 WHAT is `cornell_box`, `cases`, or a part of a case's name such as `lamp/` or `glass`; all when nothing is given.
-It takes one thread and about forty minutes, most of it for the Cornell box. Written to `tests/render/references/`:
+It takes one thread and about half an hour. Written to `tests/render/references/`:
 
 - `cornell_box.exr`, 128 x 128, half floats: the picture (`Combined`) and twice the light that bounced at least twice
   (`Indirect1`, `Indirect2`), from two halves with different seeds;
@@ -31,7 +31,7 @@ REFERENCES = Path(__file__).resolve().parent / "references"
 BLENDER = (5, 0)
 """The references are this version's Cycles."""
 CORNELL_RESOLUTION = 128
-CORNELL_SAMPLES = 12288
+CORNELL_SAMPLES = 4096
 """Per half."""
 CORNELL_SLICE = 512
 """Samples per render, so that a long run can be stopped."""
