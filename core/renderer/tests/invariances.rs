@@ -93,7 +93,7 @@ fn quarter_turn() {
     assert_same_pictures(&one, &picture(builder), 0.003, 0.05);
 }
 
-/// Few photons make noise, not another brightness: a rule on a cell's own count would brighten the picture by 15 %.
+/// Few photons make noise, not another brightness.
 #[test]
 fn number_of_photons() {
     let scene = Room::default().builder().finish().expect("a scene");
