@@ -22,7 +22,6 @@ PYTHON_OF_BPY = {"4.2.23": "3.11", "4.5.15": "3.11", "5.0.1": "3.11", "5.2.3": "
 
 # Debian's package of every shared library that some bpy wheel links to and does not carry itself.
 PACKAGE_OF_LIBRARY = {
-    "libEGL.so.1": "libegl1",
     "libGL.so.1": "libgl1",
     "libICE.so.6": "libice6",
     "libSM.so.6": "libsm6",
@@ -31,9 +30,13 @@ PACKAGE_OF_LIBRARY = {
     "libXfixes.so.3": "libxfixes3",
     "libXi.so.6": "libxi6",
     "libXrender.so.1": "libxrender1",
+    "libXt.so.6": "libxt6",
     "libXxf86vm.so.1": "libxxf86vm1",
+    "libgcc_s.so.1": "libgcc-s1",
     "libgomp.so.1": "libgomp1",
+    "libstdc++.so.6": "libstdc++6",
     "libxkbcommon.so.0": "libxkbcommon0",
+    "libz.so.1": "zlib1g",
 }
 
 
