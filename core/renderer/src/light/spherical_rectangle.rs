@@ -24,7 +24,7 @@ impl SphericalRectangle {
     /// Bounds relative to the foot of the perpendicular from the point. `None` where the solid angle is too small, or
     /// the point too near the plane, for the formulas to hold.
     pub(super) fn new(x: [f64; 2], y: [f64; 2], distance: f64) -> Option<Self> {
-        let height = |side: f64| side / side.hypot(distance);
+        let height = |side: f64| side / norm(side, distance);
         let [left, right] = x.map(height);
         let [bottom, top] = y.map(height);
         // Angles between the planes through neighbouring sides, from the normals' components along the axis.
@@ -47,14 +47,19 @@ impl SphericalRectangle {
         let [u, v] = u.map(f64::from);
         let (sin, cos) = (self.k + u * self.solid_angle).sin_cos();
         let f = (cos * self.b[0] - self.b[1]) / sin;
-        let c = (1.0 / f.hypot(self.b[0])).min(1.0).copysign(f);
+        let c = (1.0 / norm(f, self.b[0])).min(1.0).copysign(f);
         let x = (-c * z / (1.0 - c * c).max(1e-30).sqrt()).clamp(self.x[0], self.x[1]);
-        let d = x.hypot(z);
-        let [h0, h1] = self.y.map(|y| y / y.hypot(d));
+        let d = norm(x, z);
+        let [h0, h1] = self.y.map(|y| y / norm(y, d));
         let h = h0 + v * (h1 - h0);
         let y = (h * d / (1.0 - h * h).max(1e-30).sqrt()).clamp(self.y[0], self.y[1]);
         [x, y]
     }
+}
+
+/// Length of (a, b); lengths of the scene's size neither overflow nor vanish, and `hypot`'s care costs much here.
+fn norm(a: f64, b: f64) -> f64 {
+    (a * a + b * b).sqrt()
 }
 
 #[cfg(test)]

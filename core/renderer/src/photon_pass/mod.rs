@@ -138,7 +138,8 @@ impl Tracer<'_> {
             let Some(next) = self.next_direction(&surface.bsdf, ray.direction, lobes, u_lobe, u) else {
                 break;
             };
-            let survival = next.weight.max_channel().min(MAX_SURVIVAL);
+            // Flux over index squared is what refraction conserves.
+            let survival = (next.weight.max_channel() * next.eta_squared).min(MAX_SURVIVAL);
             if sampler.next() >= survival {
                 break;
             }
@@ -177,12 +178,24 @@ impl Tracer<'_> {
         let chance = if through > 0.0 { through / (through + scattered) } else { 0.0 };
         if u_lobe < chance {
             let weight = bsdf.transparency * (1.0 / chance);
-            return Some(Next { direction, weight, kind: visibility::DIFFUSE, straight: true });
+            return Some(Next {
+                direction,
+                weight,
+                kind: visibility::DIFFUSE,
+                straight: true,
+                eta_squared: 1.0,
+            });
         }
         let u_lobe = ((u_lobe - chance) / (1.0 - chance)).min(1.0 - f32::EPSILON);
         let sample = bsdf.sample(u_lobe, u, lobes, TransportMode::Importance)?;
         let weight = sample.weight * (1.0 / (1.0 - chance));
-        Some(Next { direction: sample.wi, weight, kind: ray_kind(&sample), straight: false })
+        Some(Next {
+            direction: sample.wi,
+            weight,
+            kind: ray_kind(&sample),
+            straight: false,
+            eta_squared: sample.eta_squared,
+        })
     }
 }
 
@@ -191,6 +204,8 @@ struct Next {
     weight: Rgb,
     kind: u32,
     straight: bool,
+    /// See [`crate::bsdf::BsdfSample`].
+    eta_squared: f32,
 }
 
 /// Of the lobes that are lit, those whose light is read from the pyramid.

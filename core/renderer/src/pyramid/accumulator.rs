@@ -22,6 +22,8 @@ pub struct Accumulator<'a> {
     glossy: Vec<Vec<OnceLock<GlossySums>>>,
     bins: DirectionBins,
     quantum: f64,
+    /// 1 / quantum: exact, since both are powers of two.
+    per_quantum: f64,
     deposited: AtomicU64,
     lost: AtomicU64,
 }
@@ -61,6 +63,7 @@ impl<'a> Accumulator<'a> {
                 .collect(),
             bins: bins.unwrap_or(DirectionBins { elevation: 1, azimuth: 1 }),
             quantum,
+            per_quantum: quantum.recip(),
             deposited: AtomicU64::new(0),
             lost: AtomicU64::new(0),
         }
@@ -98,7 +101,7 @@ impl<'a> Accumulator<'a> {
     fn add(&self, sums: &[AtomicI64; 3], values: Rgb) {
         for (sum, value) in sums.iter().zip(values.0) {
             #[expect(clippy::cast_possible_truncation, reason = "quantised on purpose")]
-            sum.fetch_add((f64::from(value) / self.quantum).round() as i64, Ordering::Relaxed);
+            sum.fetch_add((f64::from(value) * self.per_quantum).round() as i64, Ordering::Relaxed);
         }
     }
 

@@ -29,6 +29,7 @@ impl NormalClasses {
 
     /// Class of a unit normal.
     #[must_use]
+    #[inline]
     pub fn of(self, normal: Vec3) -> usize {
         let a = normal.abs();
         // Ties go to the earlier axis.

@@ -51,6 +51,7 @@ impl CellKey {
 }
 
 /// Brick number within the box and bit within the brick.
+#[inline]
 #[expect(clippy::cast_sign_loss, reason = "coordinates within a box are not negative")]
 fn split(cell: IVec3, size: IVec3) -> (usize, u32) {
     let brick: IVec3 = cell >> 2_i32;

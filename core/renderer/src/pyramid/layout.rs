@@ -1,9 +1,8 @@
 //! Which cells the surfaces need, and how much surface lies in each: made from the triangles, before any photon.
 
-use std::collections::HashMap;
-
 use glam::{DVec3, IVec3, Vec3};
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use super::class::NormalClasses;
 use super::clip::clip_triangle;
@@ -84,7 +83,7 @@ pub struct Layout {
 /// Area unit: sums over the whole scene stay exact in 63 bits, and a 10⁻¹² part of the scene still counts.
 const AREA_BITS: i32 = 48;
 
-type Cells = HashMap<(u32, CellKey), CellSurface>;
+type Cells = FxHashMap<(u32, CellKey), CellSurface>;
 
 impl Layout {
     /// Measures `count` triangles, given by index.
@@ -110,7 +109,7 @@ impl Layout {
             }
             a
         };
-        let cells = (0..count).into_par_iter().fold(Cells::new, add).reduce(Cells::new, merge);
+        let cells = (0..count).into_par_iter().fold(Cells::default, add).reduce(Cells::default, merge);
         let levels = levels(&grid, classes, cells);
         Self { grid, classes, levels, area_unit }
     }
@@ -206,7 +205,7 @@ fn measure(
 
 /// Sorts the cells by level and adds every cell's ancestors.
 fn levels(grid: &Grid, classes: NormalClasses, cells: Cells) -> Vec<LevelLayout> {
-    let mut by_level: Vec<HashMap<CellKey, CellSurface>> = vec![HashMap::new(); grid.levels.len()];
+    let mut by_level: Vec<FxHashMap<CellKey, CellSurface>> = vec![FxHashMap::default(); grid.levels.len()];
     for ((level, key), surface) in cells {
         by_level[level as usize].insert(key, surface);
     }

@@ -81,6 +81,7 @@ struct Level {
 }
 
 impl Level {
+    #[inline]
     fn find(&self, cell: IVec3, class: usize) -> Option<&Cell> {
         self.index.find(cell, class).map(|place| &self.cells[place])
     }
@@ -132,6 +133,7 @@ impl Pyramid {
 
     /// Normal class of a surface seen from the side of `normal` (unit, geometric).
     #[must_use]
+    #[inline]
     pub fn class(&self, normal: Vec3) -> usize {
         self.classes.of(normal)
     }
