@@ -245,8 +245,8 @@ fn direct_light_of_each_lamp() {
 
 fn assert_floor(mut builder: SceneBuilder, irradiance: f64, what: &str) {
     place(&mut builder, floor(1.0, 0.0), &[diffuse(0.5)]);
-    builder.set_camera(parallel_camera(DVec3::Z, DVec3::ZERO, 0.01, 32));
-    let mut settings = settings(0, RESOLUTION, RAYS);
+    builder.set_camera(parallel_camera(DVec3::Z, DVec3::ZERO, 0.01, 64));
+    let mut settings = settings(0, RESOLUTION, 16);
     settings.gather.camera_samples = 16;
     let found = mean(&finish_and_render(builder, &settings).radiance()) * PI / 0.5;
     assert!((found / irradiance - 1.0).abs() < 0.002, "{what}: {found} is not {irradiance}");
