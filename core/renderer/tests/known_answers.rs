@@ -96,7 +96,7 @@ fn dome_on_a_glowing_disk() {
     ];
     for (from, at, half_width, radiosity) in views {
         let mut builder = SceneBuilder::default();
-        let triangles = |mesh: &[[Vec3; 3]]| soup("part", mesh.to_vec().into_iter());
+        let triangles = |mesh: &[[Vec3; 3]]| soup("part", mesh.iter().copied());
         place(&mut builder, triangles(&dome), &[diffuse(dome_albedo as f32)]);
         place(&mut builder, triangles(&disk), &[emitter(disk_albedo as f32, (emitted / PI) as f32)]);
         builder.set_camera(camera(from, at, half_width, PIXELS));
@@ -152,7 +152,7 @@ fn energy_balance_of_a_closed_box() {
 fn facing_wall(side: usize, corners: [Vec3; 4]) -> rgp_renderer::scene::record::CameraRecord {
     let center = corners.iter().sum::<Vec3>().as_dvec3() / 4.0;
     let mut inward = DVec3::ZERO;
-    inward[side / 2] = if side % 2 == 0 { 1.0 } else { -1.0 };
+    inward[side / 2] = if side.is_multiple_of(2) { 1.0 } else { -1.0 };
     let mut record = parallel_camera(center + inward * 0.3, center, 1.0, PIXELS);
     let world = rgp_renderer::scene::record::matrix(&record.world_from_camera);
     let half = |axis: DVec3| corners.iter().map(|p| (p.as_dvec3() - center).dot(axis)).fold(0.0, f64::max);
