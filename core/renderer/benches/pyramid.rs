@@ -55,7 +55,8 @@ impl Room {
         let bounds = [DVec3::splat(-HALF), DVec3::splat(HALF)];
         let grid = Grid::new(bounds, bounds, RESOLUTION, DVec3::ZERO);
         let triangle = |i: usize| SurfaceTriangle { corners: self.triangles[i], glossy: false };
-        Layout::new(grid, NormalClasses::Six, self.triangles.len(), triangle)
+        Layout::new(grid, NormalClasses::Six, self.triangles.len(), triangle, || true)
+            .expect("nobody cancels")
     }
 
     /// Points on the walls and the floor, half of them on each, in no order.
@@ -93,7 +94,7 @@ fn filled<'a>(layout: &'a Layout, landings: &[Landing]) -> Accumulator<'a> {
 }
 
 fn merged(accumulator: Accumulator<'_>, layout: &Layout) -> Pyramid {
-    Pyramid::build(accumulator, layout, 16, |_, _| true)
+    Pyramid::build(accumulator, layout, 16, |_, _| true, || true).expect("nobody cancels")
 }
 
 fn pyramid_build(criterion: &mut Criterion, room: &Room, layout: &Layout, landings: &[Landing]) {

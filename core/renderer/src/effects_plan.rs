@@ -67,7 +67,7 @@ impl EffectsPlan {
         let transparency = first(&|m| !m.transparency().is_black(), "transparent");
         let direct = lamp.or_else(|| emissive.clone());
         let effect = |name, because: Option<String>, pass| Effect { name, because, pass };
-        let plan = Self {
+        Self {
             indirect: lit(receiver.clone()).is_some() && !lights.is_empty(),
             direction_bins: lit(rough.clone()).is_some(),
             transparency: transparency.is_some(),
@@ -82,8 +82,7 @@ impl EffectsPlan {
                 effect("emissive meshes", emissive, Pass::Gather),
                 effect("alpha transparency", transparency, Pass::Gather),
             ],
-        };
-        plan
+        }
     }
 
     /// The plan as it is reported, with the seconds of the pass behind each effect.

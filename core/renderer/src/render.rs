@@ -55,9 +55,10 @@ pub fn trace_floor(
     let film = Film::new(width, height, &settings.film);
     threads(settings)?.install(|| {
         let lit = light(scene, settings, library, &progress)?;
-        let layout = layout(&lit, settings);
+        let layout = layout(&lit, settings, &progress)?;
         let dark = Accumulator::new(&layout, 0.0, None);
-        let pyramid = Pyramid::build(dark, &layout, settings.pyramid.photons_per_cell, |_, _| true);
+        let pyramid = Pyramid::build(dark, &layout, settings.pyramid.photons_per_cell, |_, _| true, || true)
+            .ok_or(RenderError::Cancelled)?;
         Ok(gather::trace_floor(&Gatherer::new(&lit, &pyramid, settings), &film))
     })
 }
@@ -83,7 +84,7 @@ fn passes(
 
     progress.enter(Stage::Layout);
     let clock = Instant::now();
-    let layout = layout(&lit, settings);
+    let layout = layout(&lit, settings, progress)?;
     stats.pyramid.cell_size =
         f64::from(layout.grid.levels[layout.grid.finest()].cell_size) / scene.space.scale;
     stats.seconds.pyramid = clock.elapsed().as_secs_f64();
@@ -105,7 +106,10 @@ fn passes(
     let clock = Instant::now();
     stats.pyramid.build_bytes = layout.bytes() + accumulator.bytes();
     let visible = |p, q| lit.accel.sees(p, q);
-    let pyramid = Pyramid::build(accumulator, &layout, settings.pyramid.photons_per_cell, visible);
+    let pyramid = Pyramid::build(accumulator, &layout, settings.pyramid.photons_per_cell, visible, || {
+        !progress.is_cancelled()
+    })
+    .ok_or(RenderError::Cancelled)?;
     drop(layout);
     stats.pyramid.levels = pyramid.level_count();
     stats.pyramid.cells = pyramid.cell_count();
@@ -141,7 +145,7 @@ fn light<'a>(
 }
 
 /// The cells, over what the camera and its gather rays see.
-fn layout(lit: &LitScene<'_>, settings: &RenderSettings) -> Layout {
+fn layout(lit: &LitScene<'_>, settings: &RenderSettings, progress: &Progress) -> Result<Layout, RenderError> {
     let scene = lit.accel.scene();
     let seen = seen_bounds(gather::seen_points(lit, settings.render.seed), scene.bounds);
     let bounds = scene.bounds.map(Vec3::as_dvec3);
@@ -156,7 +160,7 @@ fn layout(lit: &LitScene<'_>, settings: &RenderSettings) -> Layout {
         let received = primitives.filter(|&i| lit.materials[object.material(i)].classes().intersects(reads));
         triangles.extend(received.map(|i| (index as u32, i as u32)));
     }
-    Layout::new(grid, classes, triangles.len(), |i| {
+    let triangle = |i: usize| {
         let (object, primitive) = triangles[i];
         let object = &scene.objects[object as usize];
         let material = &lit.materials[object.material(primitive as usize)];
@@ -164,7 +168,9 @@ fn layout(lit: &LitScene<'_>, settings: &RenderSettings) -> Layout {
             corners: object.corners(primitive as usize),
             glossy: material.classes().intersects(LobeSet::ROUGH),
         }
-    })
+    };
+    let keep_going = || !progress.is_cancelled();
+    Layout::new(grid, classes, triangles.len(), triangle, keep_going).ok_or(RenderError::Cancelled)
 }
 
 /// Points beyond this share on either side do not decide how fine the cells are.

@@ -29,7 +29,7 @@ fn layout(turned: DQuat) -> Layout {
     let p = |x: f64, y: f64| turned * DVec3::new(x, y, 0.0) * SIDE;
     let triangles = [[p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0)], [p(0.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)]];
     let triangle = |i: usize| SurfaceTriangle { corners: triangles[i], glossy: false };
-    Layout::new(grid, NormalClasses::Six, 2, triangle)
+    Layout::new(grid, NormalClasses::Six, 2, triangle, || true).expect("nobody cancels")
 }
 
 /// Photon `i` of `n`², evenly over the square.
@@ -46,7 +46,7 @@ fn constant_field(layout: &Layout, turned: DQuat, irradiance: f64, n: u64, photo
         let p = (turned * position(i, n)).as_vec3();
         assert!(accumulator.deposit(p, (turned * DVec3::Z).as_vec3(), flux).is_some(), "{p} has no cell");
     }
-    Pyramid::build(accumulator, layout, photons_per_cell, |_, _| true)
+    Pyramid::build(accumulator, layout, photons_per_cell, |_, _| true, || true).expect("nobody cancels")
 }
 
 /// Irradiance of the level's cells times their surface, summed.
@@ -81,7 +81,7 @@ fn flux_is_the_same_on_every_level() {
             accumulator.deposit(p.as_vec3(), Vec3::Z, Rgb::splat(flux));
         }
         assert_eq!((accumulator.deposited(), accumulator.lost()), (photons, 0));
-        let pyramid = Pyramid::build(accumulator, &layout, 16, |_, _| true);
+        let pyramid = Pyramid::build(accumulator, &layout, 16, |_, _| true, || true).expect("nobody cancels");
         for level in 0..3 {
             let flux = flux_of_level(&pyramid, &layout, level);
             assert!((flux / total - 1.0).abs() < 1e-6, "{photons} photons, level {level}: {flux} of {total}");
@@ -139,7 +139,7 @@ fn the_order_of_deposits_does_not_matter() {
         for i in order {
             accumulator.deposit(position(i, n).as_vec3(), Vec3::Z, flux(i));
         }
-        Pyramid::build(accumulator, &layout, 16, |_, _| true)
+        Pyramid::build(accumulator, &layout, 16, |_, _| true, || true).expect("nobody cancels")
     };
     let (up, down) = (build(&mut (0..n * n)), build(&mut (0..n * n).rev()));
     for level in 0..3 {

@@ -148,7 +148,7 @@ impl<'a, 'g> Block<'a, 'g> {
                 return;
             }
             let sample =
-                surface.bsdf.sample(rng.next(), rng.next2(), LobeSet::DELTA, TransportMode::Radiance);
+                surface.bsdf.sample(rng.draw(), rng.draw2(), LobeSet::DELTA, TransportMode::Radiance);
             let Some(sample) = sample else { return };
             throughput *= sample.weight;
             sampled.kind = ray_kind(&sample);

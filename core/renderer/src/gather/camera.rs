@@ -9,7 +9,7 @@ use crate::scene::{Camera, Projection, visibility};
 /// The ray through `position` of the full frame (pixels from its bottom left), with the distance at which the far clip
 /// plane ends it.
 #[must_use]
-pub fn camera_ray(camera: &Camera, lit: &LitScene<'_>, position: DVec2) -> (Ray, f32) {
+pub(super) fn camera_ray(camera: &Camera, lit: &LitScene<'_>, position: DVec2) -> (Ray, f32) {
     let [left, right, bottom, top] = camera.window;
     let at = position / DVec2::new(f64::from(camera.resolution[0]), f64::from(camera.resolution[1]));
     let plane = DVec2::new(left + (right - left) * at.x, bottom + (top - bottom) * at.y);

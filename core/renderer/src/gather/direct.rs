@@ -7,7 +7,7 @@ use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::light::DirectSample;
 use crate::lit_scene::{LitScene, Surface, lobes_lit};
-use crate::sampling::balance_heuristic;
+use crate::sampling::power_heuristic;
 use crate::scene::visibility;
 
 use super::lambert::LambertLanes;
@@ -31,7 +31,7 @@ impl Shares {
     /// Weight of light met by a BSDF sample of density `pdf`, which next-event estimation finds with `pdf_light`.
     #[must_use]
     pub(super) fn of_bsdf(self, pdf: f32, pdf_light: f32) -> f32 {
-        balance_heuristic(self.bsdf * pdf, self.light * pdf_light)
+        power_heuristic(self.bsdf * pdf, self.light * pdf_light)
     }
 }
 
@@ -66,7 +66,7 @@ pub(super) fn shadow_ray(
         1.0
     } else {
         let pdf_bsdf = bsdf.pdf(sample.wi, lobes);
-        balance_heuristic(shares.light * sample.pdf_solid_angle, shares.bsdf * pdf_bsdf)
+        power_heuristic(shares.light * sample.pdf_solid_angle, shares.bsdf * pdf_bsdf)
     };
     let cos = sample.wi.dot(bsdf.frame.ns).abs();
     let radiance = f * sample.radiance_over_pdf * (cos * weight);
@@ -90,7 +90,7 @@ pub(super) fn lambert_shadow_ray(
     let weight = if sample.is_delta {
         1.0
     } else {
-        balance_heuristic(shares.light * sample.pdf_solid_angle, shares.bsdf * pdf)
+        power_heuristic(shares.light * sample.pdf_solid_angle, shares.bsdf * pdf)
     };
     let radiance = lanes.weight[lane] * sample.radiance_over_pdf * (pdf * weight);
     let ray = Ray::leaving(lanes.p[lane], lanes.ng[lane], sample.wi, visibility::SHADOW);

@@ -173,7 +173,7 @@ pub fn seen_points(lit: &LitScene<'_>, seed: u32) -> Vec<Vec3> {
             points.push(surface.p);
             for _ in 0..GATHER_RAYS {
                 let sample =
-                    surface.bsdf.sample(rng.next(), rng.next2(), LobeSet::ALL, TransportMode::Radiance);
+                    surface.bsdf.sample(rng.draw(), rng.draw2(), LobeSet::ALL, TransportMode::Radiance);
                 let ray = sample.map(|s| Ray::leaving(surface.p, surface.ng, s.wi, ray_kind(&s)));
                 points
                     .extend(ray.and_then(|ray| first_scatterer(lit, ray, MAX_DEPTH, &mut rng)).map(|s| s.p));
@@ -195,13 +195,13 @@ fn first_scatterer<'a>(
     for _ in 0..max_depth {
         let hit = lit.accel.intersect(&ray)?;
         let surface = lit.surface(&ray, hit);
-        if rng.next() < surface.bsdf.transparency.mean() {
+        if rng.draw() < surface.bsdf.transparency.mean() {
             ray = Ray::leaving(surface.p, surface.ng, ray.direction, ray.mask);
         } else if surface.bsdf.has(LobeSet::NON_DELTA) {
             return Some(surface);
         } else {
             let sample =
-                surface.bsdf.sample(rng.next(), rng.next2(), LobeSet::ALL, TransportMode::Radiance)?;
+                surface.bsdf.sample(rng.draw(), rng.draw2(), LobeSet::ALL, TransportMode::Radiance)?;
             ray = Ray::leaving(surface.p, surface.ng, sample.wi, ray_kind(&sample));
         }
     }

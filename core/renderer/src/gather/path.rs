@@ -24,13 +24,13 @@ const ROULETTE_BELOW: f32 = 0.5;
 
 /// How a direction was found, for the weight of the light it meets.
 #[derive(Clone, Copy, Debug)]
-pub struct Sampled {
+pub(super) struct Sampled {
     /// Density per solid angle; `None` for mirrors, glass and the camera, which no light sample competes with.
-    pub pdf: Option<f32>,
+    pub(super) pdf: Option<f32>,
     /// Samples of either technique.
-    pub shares: Shares,
+    pub(super) shares: Shares,
     /// Kind of the ray, a bit of [`visibility`].
-    pub kind: u32,
+    pub(super) kind: u32,
 }
 
 impl Sampled {
@@ -41,31 +41,37 @@ impl Sampled {
 
 /// What a ray met.
 #[derive(Debug)]
-pub struct Met<'a> {
+pub(super) struct Met<'a> {
     /// Light from lamps, emissive surfaces and the world along the ray, weighted.
-    pub light: Rgb,
+    pub(super) light: Rgb,
     /// The surface at its end; `None` where it left the scene.
-    pub surface: Option<Surface<'a>>,
+    pub(super) surface: Option<Surface<'a>>,
     /// Length of the ray.
-    pub distance: f32,
+    pub(super) distance: f32,
     /// Share of light from the surface that arrives through what is transparent before it.
-    pub through: Rgb,
+    pub(super) through: Rgb,
 }
 
 /// The solid angle a ray stands for, and how far it came.
 #[derive(Clone, Copy, Debug)]
-pub struct Footprint {
+pub(super) struct Footprint {
     /// Solid angle (sr); 0 reads the finest cells.
-    pub solid_angle: f32,
+    pub(super) solid_angle: f32,
     /// Length so far (scene units).
-    pub travelled: f32,
+    pub(super) travelled: f32,
     /// Mirror-like: what is seen must be shaded, not read, unless the footprint covers a cell.
-    pub sharp: bool,
+    pub(super) sharp: bool,
 }
 
 impl<'a> Gatherer<'a> {
     /// Follows a ray to the surface it ends at. `first` is its first hit if that is known already.
-    pub fn meet(&self, mut ray: Ray, first: Option<Option<Hit>>, sampled: Sampled, rng: &mut Rng) -> Met<'a> {
+    pub(super) fn meet(
+        &self,
+        mut ray: Ray,
+        first: Option<Option<Hit>>,
+        sampled: Sampled,
+        rng: &mut Rng,
+    ) -> Met<'a> {
         let mut met = Met { light: Rgb::BLACK, surface: None, distance: 0.0, through: Rgb::WHITE };
         let (from, lit) = (ray.origin, self.lit);
         let mut known = first;
@@ -98,7 +104,7 @@ impl<'a> Gatherer<'a> {
             }
             let transparency = surface.bsdf.transparency;
             let chance = transparency.mean().clamp(0.0, 1.0);
-            if chance <= 0.0 || rng.next() >= chance {
+            if chance <= 0.0 || rng.draw() >= chance {
                 met.through = met.through * (1.0 / (1.0 - chance).max(f32::MIN_POSITIVE));
                 met.surface = Some(surface);
                 return met;
@@ -122,7 +128,7 @@ impl<'a> Gatherer<'a> {
 
     /// Radiance leaving `surface` towards where the ray came from, without its emission: read from the pyramid where the
     /// footprint allows, followed where not.
-    pub fn outgoing(
+    pub(super) fn outgoing(
         &self,
         surface: Surface<'a>,
         footprint: Footprint,
@@ -146,13 +152,13 @@ impl<'a> Gatherer<'a> {
             if lobes.intersects(LobeSet::NON_DELTA) {
                 radiance += throughput * self.one_light(&surface, lobes, rng, rays);
             }
-            let sample = surface.bsdf.sample(rng.next(), rng.next2(), lobes, TransportMode::Radiance);
+            let sample = surface.bsdf.sample(rng.draw(), rng.draw2(), lobes, TransportMode::Radiance);
             let Some(sample) = sample else { break };
             throughput *= sample.weight;
             let most = throughput.max_channel();
             if most < ROULETTE_BELOW || depth > 8 {
                 let survival = most.min(0.95);
-                if rng.next() >= survival {
+                if rng.draw() >= survival {
                     break;
                 }
                 throughput = throughput * (1.0 / survival);
@@ -188,7 +194,7 @@ impl<'a> Gatherer<'a> {
         if bsdf.has(LobeSet::ROUGH) {
             let material = self.lit.accel.material(surface.hit.object, surface.hit.primitive);
             let tint = self.lit.materials[material].specular_tint();
-            let shift = [rng.next() - 0.5, rng.next() - 0.5];
+            let shift = [rng.draw() - 0.5, rng.draw() - 0.5];
             radiance += tint * self.pyramid.glossy_radiance(surface.p, class, level, bsdf.wo(), shift);
         }
         radiance
@@ -207,7 +213,7 @@ impl<'a> Gatherer<'a> {
         if !self.lit.plan.direct {
             return Rgb::BLACK;
         }
-        let u = [rng.next(), rng.next(), rng.next()];
+        let u = [rng.draw(), rng.draw(), rng.draw()];
         let sample = self.lit.lights.sample_direct(surface.p, u);
         let shadow = sample.and_then(|sample| shadow_ray(surface, &sample, lobes, Shares::EVEN));
         shadow

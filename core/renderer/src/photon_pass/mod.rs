@@ -81,7 +81,7 @@ struct Tracer<'a> {
 impl Tracer<'_> {
     /// Follows one photon from its lamp; gives the number of segments traced.
     fn photon(&self, mut sampler: PhotonSampler) -> u64 {
-        let u = [sampler.next(), sampler.next(), sampler.next(), sampler.next(), sampler.next()];
+        let u = [sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw()];
         let Some(emission) = self.lit.lights.emit(u) else { return 0 };
         let flux = emission.flux * self.share;
         let leaving = match emission.normal {
@@ -130,17 +130,17 @@ impl Tracer<'_> {
                 if let Some(landing) =
                     landing.filter(|_| bsdf.has(lobes_read(lobes).without(LobeSet::DIFFUSE)))
                 {
-                    self.deposit_glossy(landing, &surface, stored, [sampler.next(), sampler.next()]);
+                    self.deposit_glossy(landing, &surface, stored, [sampler.draw(), sampler.draw()]);
                 }
             }
-            let u_lobe = sampler.next();
-            let u = [sampler.next(), sampler.next()];
+            let u_lobe = sampler.draw();
+            let u = [sampler.draw(), sampler.draw()];
             let Some(next) = self.next_direction(&surface.bsdf, ray.direction, lobes, u_lobe, u) else {
                 break;
             };
             // Flux over index squared is what refraction conserves.
             let survival = (next.weight.max_channel() * next.eta_squared).min(MAX_SURVIVAL);
-            if sampler.next() >= survival {
+            if sampler.draw() >= survival {
                 break;
             }
             flux = flux * next.weight * (1.0 / survival);

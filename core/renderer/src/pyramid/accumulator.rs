@@ -165,7 +165,7 @@ pub(super) struct Sums {
 
 /// Light of one cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct CellSum {
+pub(super) struct CellSum {
     /// Quanta of each channel.
     pub flux: [i64; 3],
     /// Photons.

@@ -141,8 +141,8 @@ mod tests {
         for (bin, sum) in sums.iter().enumerate() {
             let direction = frame.from_local(BINS.direction(bin, [0.5, 0.5]));
             let got = store.radiance(cell, direction, [0.0, 0.0]);
-            for c in 0..3 {
-                assert!((got.0[c] - sum[c] as f32 * 1e-3).abs() < 127.0 / 65535.0, "bin {bin}");
+            for (got, sum) in got.0.iter().zip(sum) {
+                assert!((got - *sum as f32 * 1e-3).abs() < 127.0 / 65535.0, "bin {bin}");
             }
         }
     }

@@ -20,26 +20,31 @@ const SLIVER: f64 = 0.1;
 impl Pyramid {
     /// Merges the levels and settles which cells are read from their parents: those whose *parent* holds fewer than
     /// `4 × photons_per_cell` photons (a rule on the cell's own count would brighten the picture), and slivers. `visible`
-    /// tells whether two points see each other: cells whose parts do not are read from finer ones.
+    /// tells whether two points see each other: cells whose parts do not are read from finer ones. `None` once
+    /// `keep_going` says no.
     #[must_use]
     pub fn build(
         accumulator: Accumulator<'_>,
         layout: &Layout,
         photons_per_cell: u32,
         visible: impl Fn(Vec3, Vec3) -> bool + Sync,
-    ) -> Self {
+        keep_going: impl Fn() -> bool,
+    ) -> Option<Self> {
         let mut sums = accumulator.into_sums();
         merge(layout, &mut sums);
         let mixed = mixed_cells(layout, &sums.cells, &visible);
         let enough = 4 * u64::from(photons_per_cell);
         let mut store = BinStore::new(sums.bins);
         let mut levels: Vec<Level> = Vec::with_capacity(layout.levels.len());
-        for number in 0..layout.levels.len() {
+        for (number, mixed) in mixed.iter().enumerate() {
+            if !keep_going() {
+                return None;
+            }
             let glossy = push_bins(layout, number, &sums, &mut store);
             let parents = levels.last();
             let settle = |place: usize| {
                 let own = own_cell(layout, number, place, &sums, glossy.get(&place).copied());
-                let own = own.with(sums.cells[number][place].count >= enough, mixed[number][place]);
+                let own = own.with(sums.cells[number][place].count >= enough, mixed[place]);
                 let parent = parents.and_then(|parents| {
                     let (cell, class) = layout.levels[number].keys[place].cell(&layout.grid.levels[number]);
                     parents.find(layout.grid.parent(number, cell)?, class)
@@ -50,7 +55,7 @@ impl Pyramid {
                 (0..layout.levels[number].keys.len()).into_par_iter().map(settle).collect();
             levels.push(keep_lit(layout, number, &sums.cells[number], &values));
         }
-        Self { grid: layout.grid.clone(), classes: layout.classes, levels, store }
+        Some(Self { grid: layout.grid.clone(), classes: layout.classes, levels, store })
     }
 }
 
@@ -61,12 +66,13 @@ fn own_cell(layout: &Layout, number: usize, place: usize, sums: &Sums, glossy: O
     Cell::new(Rgb(flux.map(|flux| (flux as f64 * sums.quantum / area) as f32)), glossy)
 }
 
-/// A cell as it will be read: its own values, or its parent's where they are too few and the parent is no mixture.
+/// A cell as it will be read: its own values, or its parent's where the photons are too few to tell, or the cell is a
+/// sliver of something that is no mixture.
 fn settle(layout: &Layout, number: usize, place: usize, own: Cell, parent: Option<&Cell>) -> Cell {
     let area = layout.levels[number].surfaces[place].area as f64 * layout.area_unit;
     let sliver = area < SLIVER * f64::from(layout.grid.levels[number].cell_size).powi(2);
     match parent {
-        Some(parent) if !parent.is_mixed() && (sliver || !parent.holds_enough()) => {
+        Some(parent) if !parent.holds_enough() || (sliver && !parent.is_mixed()) => {
             Cell::new(parent.irradiance(), parent.glossy()).with(own.holds_enough(), own.is_mixed())
         }
         _ => own,

@@ -19,7 +19,7 @@ pub(super) struct Part {
 
 /// Calls `add(level, cell, part)` for every cell in which light of this triangle is stored: the finest that exist where
 /// the parts of the triangle lie. The areas add up to the triangle's (Sutherland and Hodgman 1974, halving cells).
-pub fn clip_triangle(grid: &Grid, corners: [DVec3; 3], add: &mut impl FnMut(usize, IVec3, Part)) {
+pub(super) fn clip_triangle(grid: &Grid, corners: [DVec3; 3], add: &mut impl FnMut(usize, IVec3, Part)) {
     let offsets = corners.map(|p| grid.offset_f64(p));
     let polygon: Polygon = offsets.into_iter().collect();
     let (low, high) = extent(&polygon);

@@ -52,7 +52,7 @@ pub struct Grid {
 }
 
 /// Cells per edge of a brick.
-pub const BRICK: i32 = 4;
+pub(super) const BRICK: i32 = 4;
 
 /// Cells along the seen part below which a level is too coarse to be right (one eighth of the scene).
 const COARSEST_RESOLUTION: f64 = 8.0;

@@ -32,7 +32,6 @@ pub struct CellKey(u64);
 impl CellKey {
     /// Key of a cell (within its level's box) and normal class.
     #[must_use]
-    #[expect(clippy::cast_sign_loss, reason = "coordinates within a box are not negative")]
     pub fn new(level: &LevelBox, cell: IVec3, class: usize) -> Self {
         let (brick, bit) = split(cell, level.size / BRICK);
         Self((brick as u64) << 16 | (class as u64) << 8 | u64::from(bit))
@@ -40,7 +39,7 @@ impl CellKey {
 
     /// The cell and its class.
     #[must_use]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "the inverse of `new`")]
+    #[expect(clippy::cast_possible_truncation, reason = "the inverse of `new`")]
     pub fn cell(self, level: &LevelBox) -> (IVec3, usize) {
         let (brick, class, bit) =
             ((self.0 >> 16) as i32, (self.0 >> 8) as usize & 0xff, self.0 as i32 & 0x3f);

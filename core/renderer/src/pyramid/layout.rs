@@ -86,19 +86,20 @@ const AREA_BITS: i32 = 48;
 type Cells = FxHashMap<(u32, CellKey), CellSurface>;
 
 impl Layout {
-    /// Measures `count` triangles, given by index.
+    /// Measures `count` triangles, given by index; `None` once `keep_going` says no.
     #[must_use]
     pub fn new(
         grid: Grid,
         classes: NormalClasses,
         count: usize,
         triangle: impl Fn(usize) -> SurfaceTriangle + Sync,
-    ) -> Self {
+        keep_going: impl Fn() -> bool + Sync,
+    ) -> Option<Self> {
         let total: f64 = (0..count).into_par_iter().map(|i| quantized_area(triangle(i).corners)).sum();
         let area_unit = (total.max(f64::MIN_POSITIVE).log2().ceil() - f64::from(AREA_BITS)).exp2();
         let add = |mut cells: Cells, i: usize| {
             measure(&grid, classes, area_unit, &triangle(i), &mut cells);
-            cells
+            keep_going().then_some(cells)
         };
         let merge = |mut a: Cells, mut b: Cells| {
             if a.len() < b.len() {
@@ -107,11 +108,12 @@ impl Layout {
             for (key, surface) in b {
                 a.entry(key).or_default().add(&surface);
             }
-            a
+            keep_going().then_some(a)
         };
-        let cells = (0..count).into_par_iter().fold(Cells::default, add).reduce(Cells::default, merge);
+        let cells =
+            (0..count).into_par_iter().try_fold(Cells::default, add).try_reduce(Cells::default, merge)?;
         let levels = levels(&grid, classes, cells);
-        Self { grid, classes, levels, area_unit }
+        Some(Self { grid, classes, levels, area_unit })
     }
 
     /// Where a photon at `p` on a surface of class `class` belongs: level and place. A position that rounding put outside
@@ -248,7 +250,7 @@ mod tests {
         let half = DVec3::splat(0.4);
         let grid = Grid::new([-half * 0.2, half * 0.2], [-half, half], 20, DVec3::ZERO);
         let triangle = |i: usize| SurfaceTriangle { corners: triangles[i], glossy: i == 1 };
-        let layout = Layout::new(grid, NormalClasses::Six, triangles.len(), triangle);
+        let layout = Layout::new(grid, NormalClasses::Six, triangles.len(), triangle, || true).unwrap();
         let exact: f64 = triangles.iter().map(|[a, b, c]| (b - a).cross(c - a).length()).sum();
         for (level, cells) in layout.levels.iter().enumerate().take(1) {
             let sum: i64 = cells.surfaces.iter().map(|s| s.area).sum();

@@ -199,13 +199,15 @@ impl Pyramid {
         let offset = self.grid.offset(p);
         let (level, cell) = self.grid.locate(offset, level)?;
         match self.levels[level].find(cell, class) {
-            Some(found) if found.is_mixed() => self.find_finer(found, offset, class, level),
+            Some(found) if found.is_mixed() && found.holds_enough() => {
+                self.find_finer(found, offset, class, level)
+            }
             Some(found) => Some(found),
             None => self.find_coarser(cell, class, level),
         }
     }
 
-    /// Below a mixed cell: the coarsest that is none, or the finest there is.
+    /// Below a mixed cell: the coarsest that is none or too poor in photons to be split, or the finest there is.
     fn find_finer<'a>(
         &'a self,
         mut found: &'a Cell,
@@ -216,20 +218,19 @@ impl Pyramid {
         for level in level + 1..self.levels.len() {
             let Some(cell) = self.grid.levels[level].cell(offset) else { break };
             found = self.levels[level].find(cell, class)?;
-            if !found.is_mixed() {
+            if !(found.is_mixed() && found.holds_enough()) {
                 break;
             }
         }
         Some(found)
     }
 
-    /// Above a cell without a photon: dark where enough photons landed beside it to know, or where those beside it are
-    /// behind a wall.
+    /// Above a cell without a photon: dark where enough photons landed beside it to know.
     fn find_coarser(&self, mut cell: IVec3, class: usize, mut level: usize) -> Option<&Cell> {
         while level > 0 {
             (cell, level) = (self.grid.parent(level, cell)?, level - 1);
             if let Some(found) = self.levels[level].find(cell, class) {
-                return (!found.holds_enough() && !found.is_mixed()).then_some(found);
+                return (!found.holds_enough()).then_some(found);
             }
         }
         None

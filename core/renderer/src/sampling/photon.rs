@@ -33,13 +33,13 @@ impl PhotonSampler {
     }
 
     /// The next number in [0, 1).
-    pub fn next(&mut self) -> f32 {
+    pub fn draw(&mut self) -> f32 {
         let dimension = self.dimension;
         self.dimension += 1;
         if dimension < SOBOL_DIMENSIONS {
             sobol_burley::sample(self.index, dimension, self.seed)
         } else {
-            self.rng.next()
+            self.rng.draw()
         }
     }
 }

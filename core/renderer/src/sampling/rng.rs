@@ -24,7 +24,7 @@ impl Rng {
     }
 
     /// Uniform in [0, 1).
-    pub fn next(&mut self) -> f32 {
+    pub fn draw(&mut self) -> f32 {
         self.counter += 1;
         #[expect(clippy::cast_precision_loss, reason = "24 bits fit a f32 exactly")]
         let value = (hash(self.key, self.counter) >> 40) as f32 * (1.0 / 16_777_216.0);
@@ -32,7 +32,7 @@ impl Rng {
     }
 
     /// A point in the unit square.
-    pub fn next2(&mut self) -> [f32; 2] {
-        [self.next(), self.next()]
+    pub fn draw2(&mut self) -> [f32; 2] {
+        [self.draw(), self.draw()]
     }
 }

@@ -61,7 +61,7 @@ impl StratifiedSet {
             let (raw, mask) = (raw[dimension], self.mask[dimension]);
             let top = shared[dimension] & mask;
             for (value, &seed) in out.iter_mut().zip(seeds) {
-                let seed = seed ^ [0x68BC_21EB, 0x02E5_BE93][dimension];
+                let seed = mix(seed ^ [0x68BC_21EB, 0x02E5_BE93][dimension]);
                 *value = unit_float(top | (scramble(raw, seed) & !mask));
             }
         }
@@ -91,6 +91,15 @@ fn scramble(reversed: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x0552_6c56);
     x ^= x.wrapping_mul(0x53a2_2864);
     x.reverse_bits()
+}
+
+/// Spreads every bit of a seed over all bits (Wellons, lowbias32).
+fn mix(mut x: u32) -> u32 {
+    x ^= x >> 16;
+    x = x.wrapping_mul(0x7feb_352d);
+    x ^= x >> 15;
+    x = x.wrapping_mul(0x846c_a68b);
+    x ^ (x >> 16)
 }
 
 /// The leading 24 bits as a number in [0, 1).

@@ -298,7 +298,6 @@ fn place_lamp(record: LampRecord, space: &SceneSpace, problems: &mut Problems) -
     let fallback = z.any_orthonormal_pair();
     let x = axes.x_axis.try_normalize().unwrap_or(fallback.0);
     let y = axes.y_axis.try_normalize().unwrap_or(fallback.1);
-    #[expect(clippy::cast_possible_truncation, reason = "lengths in scene space are near one")]
     let shape = match record.shape {
         LampShape::Point { radius, soft_falloff } => {
             LampShape::Point { radius: length(radius, space.scale), soft_falloff }

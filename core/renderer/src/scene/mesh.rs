@@ -51,7 +51,7 @@ impl MeshArrays {
             .triangles
             .iter()
             .map(|triangle| {
-                let [a, b, c] = triangle.map(|v| DVec3::from(Vec3::from(positions[v as usize]).as_dvec3()));
+                let [a, b, c] = triangle.map(|v| Vec3::from(positions[v as usize]).as_dvec3());
                 let bad = !(a.is_finite() && b.is_finite() && c.is_finite());
                 let flat = !bad && is_degenerate([a, b, c]);
                 not_finite += u64::from(bad);
@@ -102,7 +102,7 @@ impl MeshArrays {
 fn is_degenerate([a, b, c]: [DVec3; 3]) -> bool {
     let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
     let twice_area = (b - a).cross(c - a).length();
-    !(twice_area > 2e-14 * longest)
+    twice_area <= 2e-14 * longest
 }
 
 fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {
