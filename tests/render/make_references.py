@@ -37,7 +37,7 @@ CORNELL_SLICE = 512
 """Samples per render, so that a long run can be stopped."""
 SECOND_HALF = 1000
 """Added to the seeds of the first half."""
-CASE_SAMPLES = (128, 512, 2048)
+CASE_SAMPLES = (128, 512, 2048, 8192)
 """Per half: the first that makes every standard error small enough, else the last."""
 CASE_ERROR = 1e-3
 """Standard error that is small enough, as a part of the mean over the channels."""
