@@ -20,7 +20,9 @@ SETTINGS: dict[str, dict[str, Any]] = {
 }
 """What the targets are stated for; everything else is at its default."""
 
+# A picture of more pixels than our own scenes' is scaled down, to what a benchmark has time for.
 _MOST_PIXELS = 512 * 512
+_SCALED_PIXELS = 256 * 256
 
 
 @dataclass(frozen=True)
@@ -61,13 +63,13 @@ def measure(blend: Path, threads: int, repetitions: int, progress: Progress) -> 
 
 
 def _core_scene(blend: Path) -> "rgp_core.Scene":
-    """The file's scene at its own resolution, or scaled down to what a benchmark has time for."""
+    """The file's scene, at its own resolution where that is no larger than our own scenes'."""
     b_scene = open_scene(blend)
     b_render = b_scene.render
     pixels = b_render.resolution_x * b_render.resolution_y * (b_render.resolution_percentage / 100) ** 2
     if pixels > _MOST_PIXELS:
         b_render.resolution_percentage = int(
-            b_render.resolution_percentage * math.sqrt(_MOST_PIXELS / pixels)
+            b_render.resolution_percentage * math.sqrt(_SCALED_PIXELS / pixels)
         )
     return capture(b_scene).scene
 
