@@ -212,19 +212,7 @@ impl<'a, 'g> Block<'a, 'g> {
         for index in self.gatherer.rays_of_pass(self.pass) {
             let (pdfs, others) = self.aim(index);
             self.gatherer.lit.accel.intersect_packet(&mut self.packet);
-            for lane in 0..LANES {
-                if !self.packet.is_set(lane) {
-                    continue;
-                }
-                self.rays.gather += 1;
-                if let Some(ray) = &others[lane] {
-                    self.receive(lane, ray, index);
-                } else {
-                    let weight = self.lambert.weight[lane];
-                    let pdf = Some(pdfs[lane]);
-                    self.receive(lane, &GatherRay::diffuse(weight, pdf), index);
-                }
-            }
+            self.receive(&pdfs, &others, index);
         }
     }
 
@@ -261,24 +249,42 @@ impl<'a, 'g> Block<'a, 'g> {
         }
     }
 
-    /// Adds what one gather ray brings.
-    #[inline]
-    fn receive(&mut self, lane: usize, gather_ray: &GatherRay, index: u32) {
+    /// Adds what the gather rays of a packet bring: those that end on constant Lambert surfaces are read from the pyramid
+    /// together, the others followed one by one.
+    fn receive(&mut self, pdfs: &[f32; LANES], others: &OtherRays, index: u32) {
         let g = self.gatherer;
-        let hit = self.packet.hit(lane);
-        let solid_angle = gather_ray.pdf.map_or(0.0, |pdf| (g.per_ray / pdf).min(g.widest));
-        let read = hit.filter(|_| !gather_ray.sharp).and_then(|hit| {
-            let ray = self.packet.ray(lane);
-            g.look_up_lambert(ray.origin, ray.direction, &hit, solid_angle)
-        });
-        if let Some(radiance) = read {
-            self.samples[lane].indirect += gather_ray.weight * radiance;
-        } else {
-            self.receive_other(lane, gather_ray, hit, solid_angle, index);
+        let (mut p, mut class, mut level) = ([Vec3::ZERO; LANES], [0; LANES], [0; LANES]);
+        let mut weight = [Rgb::BLACK; LANES];
+        let mut read = [false; LANES];
+        for lane in 0..LANES {
+            if !self.packet.is_set(lane) {
+                continue;
+            }
+            self.rays.gather += 1;
+            let ray = others[lane]
+                .unwrap_or_else(|| GatherRay::diffuse(self.lambert.weight[lane], Some(pdfs[lane])));
+            let hit = self.packet.hit(lane);
+            let solid_angle = ray.pdf.map_or(0.0, |pdf| (g.per_ray / pdf).min(g.widest));
+            match hit.filter(|_| !ray.sharp).and_then(|hit| g.readable(&hit, solid_angle)) {
+                Some(readable) => {
+                    let Ray { origin, direction, .. } = self.packet.ray(lane);
+                    let ng = readable.ng;
+                    p[lane] = origin + direction * readable.t;
+                    class[lane] = g.pyramid.class(if direction.dot(ng) > 0.0 { -ng } else { ng });
+                    level[lane] = readable.level;
+                    weight[lane] = ray.weight * readable.albedo_over_pi;
+                    read[lane] = true;
+                }
+                None => self.receive_other(lane, &ray, hit, solid_angle, index),
+            }
+        }
+        let irradiance = g.pyramid.irradiances(&p, &class, &level, &read);
+        for lane in 0..LANES {
+            self.samples[lane].indirect += weight[lane] * irradiance[lane];
         }
     }
 
-    /// As `receive`, for rays that meet light or anything but a constant Lambert surface, or are too short to be read.
+    /// As `receive`, for a ray that meets light or anything but a constant Lambert surface, or is too short to be read.
     #[inline(never)]
     fn receive_other(
         &mut self,
@@ -303,22 +309,25 @@ impl<'a, 'g> Block<'a, 'g> {
     }
 }
 
+/// A hit on a constant Lambert surface, far enough away to be read from the pyramid.
+struct Readable {
+    t: f32,
+    ng: Vec3,
+    albedo_over_pi: Rgb,
+    level: usize,
+}
+
 impl Gatherer<'_> {
-    /// Radiance from a hit on a constant Lambert surface, read from the pyramid; `None` where there is more to it.
     #[inline]
-    fn look_up_lambert(&self, origin: Vec3, direction: Vec3, hit: &Hit, solid_angle: f32) -> Option<Rgb> {
+    fn readable(&self, hit: &Hit, solid_angle: f32) -> Option<Readable> {
         if self.lit.accel.is_lamp(hit.object) {
             return None;
         }
         let (ng, material) = self.lit.accel.triangle(hit.object, hit.primitive);
         let albedo_over_pi = self.plain[material]?;
         let level = self.pyramid.level_for(solid_angle * hit.t * hit.t);
-        if hit.t < self.retrace_distance * self.pyramid.nominal_cell_size(level) {
-            return None;
-        }
-        let facing = if direction.dot(ng) > 0.0 { -ng } else { ng };
-        let p = origin + direction * hit.t;
-        Some(albedo_over_pi * self.pyramid.irradiance(p, self.pyramid.class(facing), level))
+        let near = hit.t < self.retrace_distance * self.pyramid.nominal_cell_size(level);
+        (!near).then_some(Readable { t: hit.t, ng, albedo_over_pi, level })
     }
 }
 

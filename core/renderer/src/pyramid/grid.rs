@@ -122,7 +122,10 @@ impl Grid {
     #[must_use]
     #[inline]
     pub fn locate(&self, offset: Vec3, level: usize) -> Option<(usize, IVec3)> {
-        (0..=level).rev().find_map(|level| Some((level, self.levels[level].cell(offset)?)))
+        if let Some(cell) = self.levels[level].cell(offset) {
+            return Some((level, cell));
+        }
+        (0..level).rev().find_map(|level| Some((level, self.levels[level].cell(offset)?)))
     }
 
     /// The cell of the next coarser level that holds `cell`.

@@ -91,18 +91,30 @@ impl LevelIndex {
         self.len
     }
 
-    /// Place of a cell (within the level's box), `None` where it does not exist.
-    #[must_use]
+    /// First half of [`LevelIndex::find`]: the number of the cell's brick, and the cell's bit in it.
     #[inline]
-    pub fn find(&self, cell: IVec3, class: usize) -> Option<usize> {
+    pub(super) fn brick(&self, cell: IVec3) -> (u32, u32) {
         let (brick, bit) = split(cell, self.size);
-        let brick = self.bricks[brick];
+        (self.bricks[brick], bit)
+    }
+
+    /// Second half of [`LevelIndex::find`].
+    #[inline]
+    pub(super) fn place(&self, brick: u32, bit: u32, class: usize) -> Option<usize> {
         if brick == NO_BRICK {
             return None;
         }
         let entry = self.masks[brick as usize * self.classes + class];
         let below = entry.mask & ((1 << bit) - 1);
         (entry.mask >> bit & 1 == 1).then(|| (entry.base + below.count_ones()) as usize)
+    }
+
+    /// Place of a cell (within the level's box), `None` where it does not exist.
+    #[must_use]
+    #[inline]
+    pub fn find(&self, cell: IVec3, class: usize) -> Option<usize> {
+        let (brick, bit) = self.brick(cell);
+        self.place(brick, bit, class)
     }
 
     /// Memory (bytes).

@@ -178,6 +178,43 @@ impl Pyramid {
         self.find(p, class, level).map_or(Rgb::BLACK, Cell::irradiance)
     }
 
+    /// [`Pyramid::irradiance`] of several places at once, where `set`: one step for all before the next, so that the
+    /// memory is waited for once and not once per place.
+    #[must_use]
+    #[inline]
+    pub fn irradiances<const N: usize>(
+        &self,
+        p: &[Vec3; N],
+        class: &[usize; N],
+        level: &[usize; N],
+        set: &[bool; N],
+    ) -> [Rgb; N] {
+        let mut found = [None; N];
+        let mut bricks = [(0, 0, 0); N];
+        for i in (0..N).filter(|&i| set[i]) {
+            found[i] = self.grid.locate(self.grid.offset(p[i]), level[i]);
+        }
+        for i in 0..N {
+            if let Some((level, cell)) = found[i] {
+                let (brick, bit) = self.levels[level].index.brick(cell);
+                bricks[i] = (level, brick, bit);
+            }
+        }
+        let mut places = [None; N];
+        for i in 0..N {
+            let (level, brick, bit) = bricks[i];
+            places[i] = found[i].and_then(|_| self.levels[level].index.place(brick, bit, class[i]));
+        }
+        let mut out = [Rgb::BLACK; N];
+        for i in (0..N).filter(|&i| set[i]) {
+            out[i] = match places[i].map(|place| &self.levels[bricks[i].0].cells[place]) {
+                Some(cell) if !cell.is_mixed() => cell.irradiance(),
+                _ => self.irradiance(p[i], class[i], level[i]),
+            };
+        }
+        out
+    }
+
     /// Radiance (W·m⁻²·sr⁻¹) of the glossy surfaces of class `class` at `p` towards the unit vector `direction`, divided by
     /// their tint; `shift` in [-½, ½]² as in [`DirectionBins::bin`].
     #[must_use]
