@@ -2,8 +2,8 @@
 
 use std::ops::Index;
 
-use arrayvec::ArrayVec;
 use glam::Vec3;
+use smallvec::SmallVec;
 
 use super::dielectric::{self, Glass};
 use super::lobe::Lobe;
@@ -183,7 +183,7 @@ impl PreparedMaterial {
         let frame = ShadingFrame::new(wo, ng, ns);
         let cos = wo.dot(frame.ns).clamp(0.0, 1.0);
         let (emission, transparency) = (self.bare_emission, self.transparency);
-        let mut bsdf = Bsdf { material: self, wo, lobes: ArrayVec::new(), emission, transparency, frame };
+        let mut bsdf = Bsdf { material: self, wo, lobes: SmallVec::new(), emission, transparency, frame };
         if !self.lambert.is_black() {
             bsdf.lobes.push(Lobe::lambert(self.lambert, 0));
         }

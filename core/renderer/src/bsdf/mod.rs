@@ -28,8 +28,8 @@ mod sanitize;
 
 use std::ops::BitOr;
 
-use arrayvec::ArrayVec;
 use glam::Vec3;
+use smallvec::SmallVec;
 
 use crate::color::Rgb;
 use lobe::Lobe;
@@ -39,7 +39,8 @@ pub use material::{MaterialTable, PreparedMaterial};
 /// Most lobes at one hit.
 const MAX_LOBES: usize = 16;
 
-type LobeList = ArrayVec<Lobe, MAX_LOBES>;
+/// Most surfaces have one lobe or two; a hit is copied around too often to carry room for all.
+type LobeList = SmallVec<[Lobe; 2]>;
 
 /// A set of lobe classes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

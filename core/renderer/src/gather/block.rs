@@ -267,10 +267,7 @@ impl<'a, 'g> Block<'a, 'g> {
             let solid_angle = ray.pdf.map_or(0.0, |pdf| (g.per_ray / pdf).min(g.widest));
             match hit.filter(|_| !ray.sharp).and_then(|hit| g.readable(&hit, solid_angle)) {
                 Some(readable) => {
-                    let Ray { origin, direction, .. } = self.packet.ray(lane);
-                    let ng = readable.ng;
-                    p[lane] = origin + direction * readable.t;
-                    class[lane] = g.pyramid.class(if direction.dot(ng) > 0.0 { -ng } else { ng });
+                    (p[lane], class[lane]) = readable.place(&self.packet.ray(lane), g.pyramid);
                     level[lane] = readable.level;
                     weight[lane] = ray.weight * readable.albedo_over_pi;
                     read[lane] = true;
@@ -306,28 +303,6 @@ impl<'a, 'g> Block<'a, 'g> {
             sample.indirect +=
                 weight * met.through * g.outgoing(surface, footprint, &mut rng, &mut self.rays);
         }
-    }
-}
-
-/// A hit on a constant Lambert surface, far enough away to be read from the pyramid.
-struct Readable {
-    t: f32,
-    ng: Vec3,
-    albedo_over_pi: Rgb,
-    level: usize,
-}
-
-impl Gatherer<'_> {
-    #[inline]
-    fn readable(&self, hit: &Hit, solid_angle: f32) -> Option<Readable> {
-        if self.lit.accel.is_lamp(hit.object) {
-            return None;
-        }
-        let (ng, material) = self.lit.accel.triangle(hit.object, hit.primitive);
-        let albedo_over_pi = self.plain[material]?;
-        let level = self.pyramid.level_for(solid_angle * hit.t * hit.t);
-        let near = hit.t < self.retrace_distance * self.pyramid.nominal_cell_size(level);
-        (!near).then_some(Readable { t: hit.t, ng, albedo_over_pi, level })
     }
 }
 

@@ -12,6 +12,7 @@ mod direct;
 mod floor;
 mod lambert;
 mod path;
+mod readable;
 mod vertex;
 
 use std::ops::Range;

@@ -166,8 +166,15 @@ impl<'a> Gatherer<'a> {
             let kind = ray_kind(&sample);
             let ray = Ray::leaving(surface.p, surface.ng, sample.wi, kind | self.lit.accel.lamp_bit());
             rays.gather += 1;
+            let hit = self.lit.accel.intersect(&ray);
+            let readable = hit.filter(|_| !sample.is_delta).and_then(|hit| self.readable(&hit, 0.0));
+            if let Some(readable) = readable {
+                let (p, class) = readable.place(&ray, self.pyramid);
+                let irradiance = self.pyramid.irradiance(p, class, readable.level);
+                return radiance + throughput * readable.albedo_over_pi * irradiance;
+            }
             let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
-            let met = self.meet(ray, None, Sampled { pdf, shares: Shares::EVEN, kind }, rng);
+            let met = self.meet(ray, Some(hit), Sampled { pdf, shares: Shares::EVEN, kind }, rng);
             radiance += throughput * met.light;
             throughput *= met.through;
             let Some(next) = met.surface else { break };
