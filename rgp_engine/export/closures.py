@@ -101,9 +101,14 @@ def _rough(kind: str, *more: str) -> Callable[[Folder, Output], Closure]:
     def convert(folder: Folder, source: Output) -> Closure:
         numbers = {name.lower(): folder.value(source.input(name)) for name in more}
         roughness = clamp(folder.value(source.input("Roughness")))
+        distribution = getattr(source.b_node, "distribution", "MULTI_GGX")
         # Blender 4.1 and before had perfect mirrors as a distribution of their own.
-        if getattr(source.b_node, "distribution", "") == "SHARP":
+        if distribution == "SHARP":
             roughness = 0.0
+        elif roughness > 0.0 and distribution in ("BECKMANN", "ASHIKHMIN_SHIRLEY"):
+            folder.report_node(
+                source.b_node, f"the distribution {distribution} is not supported yet; GGX is used"
+            )
         color = list(folder.color(source.input("Color")))
         return {"kind": kind, "color": color, "roughness": roughness, **numbers}
 
