@@ -124,10 +124,11 @@ impl Film {
     /// has.
     pub fn finish_pass(&self, gather_rays: u32) {
         let samples = self.samples();
+        let reached = self.weights(&samples);
         let mut sums = self.sums.write().unwrap_or_else(PoisonError::into_inner);
         sums.par_chunks_mut(self.width.max(1)).enumerate().for_each(|(y, row)| {
             for (x, sum) in row.iter_mut().enumerate() {
-                self.add_around(sum, &samples, [x, y], f64::from(gather_rays));
+                self.add_around(sum, &samples, &reached, [x, y], f64::from(gather_rays));
             }
         });
         self.pass.iter().for_each(|tile| lock(tile).clear());
@@ -184,20 +185,39 @@ impl Film {
         samples
     }
 
-    /// Adds to a pixel the samples its filter reaches.
-    fn add_around(&self, sum: &mut Sums, samples: &[PixelSample], [x, y]: [usize; 2], gather_rays: f64) {
+    /// Adds to a pixel the samples its filter reaches. `reached` holds, for each sample, its weight along x and along y for
+    /// the pixels `reach` to the left (below) up to `reach` to the right (above).
+    fn add_around(
+        &self,
+        sum: &mut Sums,
+        samples: &[PixelSample],
+        reached: &[f32],
+        [x, y]: [usize; 2],
+        rays: f64,
+    ) {
         let reach = self.filter.reach();
+        let span = 2 * reach + 1;
         for ny in y.saturating_sub(reach)..(y + reach + 1).min(self.height) {
             for nx in x.saturating_sub(reach)..(x + reach + 1).min(self.width) {
-                let sample = &samples[ny * self.width + nx];
-                let dx = nx as f32 - x as f32 + sample.offset[0];
-                let dy = ny as f32 - y as f32 + sample.offset[1];
-                let weight = self.filter.weight(dx) * self.filter.weight(dy);
-                if sample.taken && weight > 0.0 {
-                    sum.add(sample, f64::from(weight), gather_rays);
+                let index = ny * self.width + nx;
+                let along = &reached[index * 2 * span..][..2 * span];
+                let weight = along[x + reach - nx] * along[span + y + reach - ny];
+                if weight > 0.0 {
+                    sum.add(&samples[index], f64::from(weight), rays);
                 }
             }
         }
+    }
+
+    /// See [`Film::add_around`]; samples that were not taken weigh nothing.
+    fn weights(&self, samples: &[PixelSample]) -> Vec<f32> {
+        let reach = self.filter.reach() as i32;
+        let along = |offset: f32, taken: bool| {
+            (-reach..=reach)
+                .map(move |pixel| if taken { self.filter.weight(offset - pixel as f32) } else { 0.0 })
+        };
+        let of = |s: &PixelSample| along(s.offset[0], s.taken).chain(along(s.offset[1], s.taken));
+        samples.par_iter().flat_map_iter(of).collect()
     }
 }
 

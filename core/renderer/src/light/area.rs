@@ -19,8 +19,8 @@ const SMALLEST_SIDE: f32 = 1e-6;
 const WIDE_SOLID_ANGLE: f64 = 0.5;
 
 /// Squared diagonal over squared distance below which a lamp looks flat: sampled by area, at a fraction of the cost, its
-/// contributions vary by less than a factor of two.
-const FAR_SIZE_SQUARED: f32 = 0.15;
+/// contributions vary by a factor of two or three.
+const FAR_SIZE_SQUARED: f32 = 0.4;
 
 /// An area lamp.
 #[derive(Clone, Debug)]
