@@ -29,7 +29,7 @@ class RGPGatherSettings(bpy.types.PropertyGroup):
     light_samples: bpy.props.IntProperty(
         name="Light Samples",
         description="Shadow rays per camera sample",
-        default=2,
+        default=1,
         min=1,
         max=64,
     )

@@ -121,7 +121,7 @@ impl Default for GatherSettings {
         Self {
             rays: 256,
             camera_samples: 16,
-            light_samples: 2,
+            light_samples: 1,
             sampling: GatherSampling::Cosine,
             retrace_distance: 1.732_050_8,
             max_depth: 32,
