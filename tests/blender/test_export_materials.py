@@ -47,8 +47,8 @@ def approx(closure):
         ),
         (
             "BsdfRefraction",
-            {"Color": (1.0, 0.9, 0.8), "Roughness": 0.1, "IOR": 1.6},
-            {"kind": "refraction", "color": [1.0, 0.9, 0.8], "roughness": 0.1, "ior": 1.6},
+            {"Color": (1.0, 0.9, 0.8), "Roughness": 0.0, "IOR": 1.6},
+            {"kind": "refraction", "color": [1.0, 0.9, 0.8], "roughness": 0.0, "ior": 1.6},
         ),
         ("BsdfTransparent", {"Color": (0.5, 0.6, 0.7)}, {"kind": "transparent", "color": [0.5, 0.6, 0.7]}),
         (
@@ -62,6 +62,15 @@ def test_simple_shaders(scene, closures, problems, kind, inputs, expected):
     closure = only(closures(build.surface(f"ShaderNode{kind}", **inputs)))
     assert closure == approx(expected)
     assert not any("Material" in text for text in problems())
+
+
+@pytest.mark.parametrize(("distribution", "is_reported"), [("BECKMANN", True), ("GGX", False)])
+def test_other_distributions_are_reported(scene, closures, problems, distribution, is_reported):
+    b_material = build.surface("ShaderNodeBsdfRefraction", Roughness=0.1)
+    (b_node,) = (node for node in b_material.node_tree.nodes if node.type == "BSDF_REFRACTION")
+    b_node.distribution = distribution
+    assert only(closures(b_material))["roughness"] == pytest.approx(0.1)
+    assert any("BECKMANN" in text for text in problems()) == is_reported
 
 
 def test_principled(scene, closures):
