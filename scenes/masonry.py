@@ -28,7 +28,7 @@ from scenes.shapes import (
 
 POINT = 1.25
 RISE = math.sqrt(2.0 * POINT - 1.0)
-ROLL: Curve = [(-0.09, 0.06), (-0.09, 0.0), (-0.065, -0.03), (-0.06, -0.09), (0.0, -0.13)]
+ROLL: Curve = [(-0.09, 0.06), (-0.09, -0.02), (-0.06, -0.09), (0.0, -0.13)]
 """Left half of a rib's section, open above, around the line it follows (sideways, upwards)."""
 
 
@@ -128,7 +128,7 @@ def _flat_sweep(
     return sweep(section, np.insert(np.array(path, float), 1, y, axis=1), (0.0, 1.0, 0.0), closed)
 
 
-def archivolt(opening: Opening, y: float, steps: int = 14) -> Shape:
+def archivolt(opening: Opening, y: float, steps: int = 12) -> Shape:
     """Stones of two tones (slots 0 and 1) around an arch, standing out of the wall's face at `y` towards -y."""
     section = [
         (-0.02, 0.02),
@@ -266,7 +266,7 @@ def pier(height: float) -> Shape:
     abacus = [box((-0.70, -0.70, height - 0.21), (0.70, 0.70, height - 0.07), 0.05)]
     abacus.append(box((-0.76, -0.76, height - 0.08), (0.76, 0.76, height), 0.03))
     leaves = []
-    for row, (count, foot, size) in enumerate(((12, neck + 0.08, 0.38), (12, neck + 0.28, 0.42))):
+    for row, (count, foot, size) in enumerate(((10, neck + 0.08, 0.38), (10, neck + 0.28, 0.42))):
         for number in range(count):
             angle = 2.0 * math.pi * (number + 0.5 * row) / count
             radius = float(np.interp(angle % (2.0 * math.pi), angles, plan, period=2.0 * math.pi))
@@ -289,7 +289,7 @@ def crocket(height: float, radius: float) -> Shape:
 
 
 def boss(radius: float) -> Shape:
-    """A keystone hanging below z = 0, with a flower of eight petals."""
+    """A keystone hanging below z = 0, with a flower of four petals."""
     r = radius
     stone = lathe(
         [(0.0, -0.26), (0.45 * r, -0.24), (0.6 * r, -0.16), (0.95 * r, -0.18), (r, -0.1), (r, 0.1)], 24
@@ -297,7 +297,7 @@ def boss(radius: float) -> Shape:
 
     def petals(points: Points) -> Points:
         angle = np.arctan2(points[:, 1], points[:, 0])
-        return points * np.stack([1.0 + 0.09 * np.cos(8.0 * angle)] * 2 + [np.ones_like(angle)], axis=1)
+        return points * np.stack([1.0 + 0.09 * np.cos(4.0 * angle)] * 2 + [np.ones_like(angle)], axis=1)
 
     return mapped(stone, petals)
 
@@ -305,8 +305,8 @@ def boss(radius: float) -> Shape:
 def pew(length: float) -> Shape:
     """A bench along x around its middle, its back towards -y, between carved ends; it stands on z = 0."""
     half = 0.5 * length
-    seat = box((-half, -0.18, 0.42), (half, 0.24, 0.46), 0.01)
-    rest = box((-half, -0.235, 0.50), (half, -0.20, 0.90), 0.01)
+    seat = box((-half, -0.18, 0.42), (half, 0.24, 0.46))
+    rest = box((-half, -0.235, 0.50), (half, -0.20, 0.90))
     rail = box((-half, -0.26, 0.90), (half, -0.17, 0.95), 0.015)
     shelf = box((-half, -0.44, 0.72), (half, -0.26, 0.745))
     skirt = box((-half, 0.20, 0.05), (half, 0.225, 0.42))

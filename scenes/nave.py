@@ -38,9 +38,9 @@ CHANCEL = Opening(3.35, 0.0, 8.0)
 APSE_WINDOW = Opening(0.62, 3.2, 7.2)
 APSE_RADIUS, APSE_SIDES = 4.1, 5
 APSE_VAULT = 8.6
-SUN_TRAVEL = Vector((-0.68, 0.40, -0.53)).normalized()
+SUN_TRAVEL = Vector((-0.70, 0.40, -0.45)).normalized()
 SUN_DISTANCE = 20.0
-SUN_POWER = 520e3
+SUN_POWER = 300e3
 SKY = (5.2, 6.0, 7.2)
 """Radiance of the windows (W/sr/m²)."""
 CAMERA = (0.0, 1.1, 2.1)
@@ -101,8 +101,8 @@ def string_course(x: float, z: float) -> Shape:
 
 def wall_bay() -> Shape:
     """One bay of the right nave wall: arcade arch, two string courses, upper window; slot 2 is iron and tracery."""
-    arcade = masonry.pierced_wall(BAY, ARCADE, 7.6, ARCH, ARCH, WALL, 12)
-    upper = masonry.pierced_wall(BAY, 7.6, TOP, UPPER.widened(0.25), UPPER, WALL, 12)
+    arcade = masonry.pierced_wall(BAY, ARCADE, 7.6, ARCH, ARCH, WALL, 10)
+    upper = masonry.pierced_wall(BAY, 7.6, TOP, UPPER.widened(0.25), UPPER, WALL, 10)
     lights = masonry.tracery(UPPER.widened(0.09), 0.62)
     orders = [masonry.archivolt(ARCH, 0.0)]
     # The same stones on the aisle's side of the arch.
@@ -118,19 +118,19 @@ def aisle_bay() -> Shape:
     """One bay of the right aisle: outer wall with a window, responds, vault; slot 1 bands, 2 tracery, 3 webs."""
     low, high = AISLE
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    outer = masonry.pierced_wall(BAY, -0.1, 7.6, LOWER.widened(0.3), LOWER, WALL, 12)
+    outer = masonry.pierced_wall(BAY, -0.1, 7.6, LOWER.widened(0.3), LOWER, WALL, 10)
     lights = masonry.tracery(LOWER.widened(0.1), 0.6, 0.05)
     wall = moved(join([outer, in_slot(lights, 2)]), (high, 0.0, 0.0), SIDEWAYS)
     sill = in_slot(string_course(high, 1.45), 1)
     respond = moved(masonry.shaft(0.2, 0.0, ARCADE, 12), (high - 0.04, 0.5 * BAY, 0.0))
     rise, dome, across = 2.2, 0.2, 0.5 * BAY
-    webs = in_slot(masonry.vault(half, across, rise, dome, 8), 3)
+    webs = in_slot(masonry.vault(half, across, rise, dome, 7), 3)
     ribs = [
-        masonry.vault_rib(half, across, rise, dome, ends, 8, 0.9)
+        masonry.vault_rib(half, across, rise, dome, ends, 7, 0.9)
         for ends in ((-1, -1, 1, 1), (-1, 1, 1, -1), (1, -1, 1, 1), (-1, -1, -1, 1))
     ]
     main = masonry.vault_rib(half, across, rise, dome, (-1, 1, 1, 1), 10, 1.7)
-    ribs.append(masonry.banded(main, 8, 2))
+    ribs.append(masonry.banded(main, 6, 2))
     stone = moved(masonry.boss(0.22), (0.0, 0.0, rise + dome))
     vault = moved(join([webs, *ribs, stone]), (middle, 0.0, ARCADE))
     return join([wall, sill, respond, vault])
@@ -149,7 +149,7 @@ def high_vault_bay() -> Shape:
         for sign in (-1, 1)
     ]
     main = masonry.vault_rib(half, across, VAULT_RISE, VAULT_DOME, (-1, 1, 1, 1), 16, 2.4)
-    ribs.append(masonry.banded(main, 8, 2))
+    ribs.append(masonry.banded(main, 6, 2))
     stone = moved(masonry.boss(0.4), (0.0, 0.0, VAULT_RISE + VAULT_DOME))
     parts = [moved(join([webs, *ribs, stone]), (0.0, 0.0, VAULT))]
     for sign in (-1.0, 1.0):
@@ -302,7 +302,7 @@ def build() -> None:
     add_shape("Paving", paving(), [stuff["Slab light"], stuff["Slab dark"], stuff["Slab worn"]])
     add_shape("Altar", altar(), [stone, stuff["Cloth"], stuff["Linen"], stuff["Gilt"]])
     pews = moved(masonry.pew(2.3), (2.15, 0.0, 0.0))
-    rows = [5.2 + 1.05 * number for number in range(20)]
+    rows = [5.2 + 1.05 * number for number in range(18)]
     right = add_shape("Pew", pews, [stuff["Oak"]])
     right.location = (0.0, rows[0], 0.0)
     add_copies(right, [((x, y, 0.0), 0.0) for x in (0.0, -4.3) for y in rows if (x, y) != (0.0, rows[0])])

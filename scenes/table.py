@@ -13,7 +13,7 @@ import bpy
 from mathutils import Vector
 
 from scenes import common, furniture, tableware
-from scenes.shapes import Shape, add_copies, add_shape, in_slot, join, moved, turned
+from scenes.shapes import Shape, add_copies, add_shape, box, in_slot, join, moved, tube, turned
 
 TOP = furniture.TABLE[2] + 0.0004
 """Height on which things on the table stand, a hair above it (m)."""
@@ -157,7 +157,7 @@ def build_middle() -> None:
     for number, (x, y, z) in enumerate(heap):
         fruit = turned(tableware.apple(0.4 + 0.9 * (number % 4)), 2.1 * number, 2)
         add_shape("Apple", moved(fruit, (0.06 + x, -0.02 + y, TOP + z)), [reds[number % 3 == 2], *skins])
-    board = in_slot(furniture.box((-0.21, -0.11, 0.0), (0.21, 0.11, 0.018), 0.004), 0)
+    board = box((-0.21, -0.11, 0.0), (0.21, 0.11, 0.018), 0.004)
     add_shape("Bread board", moved(board, (-0.45, 0.0, TOP), 0.15), [plain("Beech", (0.48, 0.31, 0.17))])
     crust, crumb = plain("Crust", (0.42, 0.20, 0.075)), plain("Crumb", (0.72, 0.60, 0.40))
     add_shape("Loaf", moved(tableware.loaf(), (-0.48, 0.03, TOP + 0.018), 0.2), [crust])
@@ -174,9 +174,7 @@ def build_middle() -> None:
     brass, wax = bpy.data.materials["Brass"], plain("Wax", (0.78, 0.73, 0.60))
     for x, y in ((0.34, 0.12), (-0.80, -0.02)):
         stick = tableware.turned_ware(tableware.CANDLESTICK, 16)
-        candle = furniture.tube(
-            [(0.0, 0.0, 0.15), (0.0, 0.0, 0.36), (0.0, 0.0, 0.368)], [0.0105, 0.0095, 0.004], 12
-        )
+        candle = tube([(0.0, 0.0, 0.15), (0.0, 0.0, 0.36), (0.0, 0.0, 0.368)], [0.0105, 0.0095, 0.004], 12)
         add_shape("Candlestick", moved(join([stick, in_slot(candle, 1)]), (x, y, TOP)), [brass, wax])
 
 
