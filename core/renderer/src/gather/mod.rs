@@ -1,23 +1,25 @@
-//! The final gather: the picture, from the pyramid.
+//! The final gather: the picture, from the pyramid or what stands in for it.
 //!
 //! For each pixel, `camera_samples` points x are seen; from each, gather rays leave with density p and meet points y. The
 //! radiance towards the camera is the light emitted and arriving directly at x, plus (paper, eq. 2, 3)
-//! `1/N Σ f(x) cos / p · L(y)`, where L(y) is read from the pyramid over the footprint Ω r² with Ω = 1 / (N p).
+//! `1/N Σ f(x) cos / p · L(y)`, where L(y) is read over the footprint Ω r² with Ω = 1 / (N p).
 //!
 //! One pass over the picture is one camera sample of every pixel; passes are independent and their mean is the picture.
 
 mod block;
 mod camera;
+mod deferred;
 mod direct;
 mod floor;
 mod lambert;
+mod look_up;
 mod path;
 mod readable;
 mod vertex;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
@@ -26,10 +28,10 @@ use crate::accel::Ray;
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::error::RenderError;
+use crate::estimator::Estimator;
 use crate::film::{BLOCK, Film, PixelSample};
 use crate::lit_scene::{LitScene, Surface, ray_kind};
 use crate::progress::Progress;
-use crate::pyramid::Pyramid;
 use crate::sampling::{Rng, StratifiedSet, hash};
 use crate::scene::visibility;
 use crate::settings::{GatherSampling, RenderSettings};
@@ -37,19 +39,20 @@ use crate::stats::RayCounts;
 
 use block::{Block, widest_stratum};
 use camera::camera_ray;
+use deferred::OpenTile;
 use direct::Shares;
 pub use floor::{TraceFloor, trace_floor};
+pub use look_up::PyramidLookup;
 
 /// What every gather ray needs to know.
-pub struct Gatherer<'a> {
+pub struct Gatherer<'a, E> {
     lit: &'a LitScene<'a>,
-    pyramid: &'a Pyramid,
+    estimator: &'a E,
     seed: u32,
     camera_samples: u32,
     light_samples: u32,
     rays: u32,
     max_depth: u32,
-    retrace_distance: f32,
     sampling: GatherSampling,
     camera_set: StratifiedSet,
     light_set: StratifiedSet,
@@ -68,10 +71,10 @@ pub struct Gatherer<'a> {
     plain: Vec<Option<Rgb>>,
 }
 
-impl<'a> Gatherer<'a> {
-    /// Prepares a gather over a finished pyramid.
+impl<'a, E: Estimator> Gatherer<'a, E> {
+    /// Prepares a gather whose rays are answered by `estimator`.
     #[must_use]
-    pub fn new(lit: &'a LitScene<'a>, pyramid: &'a Pyramid, settings: &RenderSettings) -> Self {
+    pub fn new(lit: &'a LitScene<'a>, estimator: &'a E, settings: &RenderSettings) -> Self {
         let gather = &settings.gather;
         let seed = settings.render.seed;
         let set = |count: u32, salt: u64| StratifiedSet::new(count, hash(u64::from(seed), salt) as u32);
@@ -81,13 +84,12 @@ impl<'a> Gatherer<'a> {
         });
         Self {
             lit,
-            pyramid,
+            estimator,
             seed,
             camera_samples: gather.camera_samples,
             light_samples: gather.light_samples,
             rays: gather.rays,
-            max_depth: gather.max_depth,
-            retrace_distance: gather.retrace_distance,
+            max_depth: gather.max_depth.max(E::LEAST_DEPTH),
             sampling: gather.sampling,
             camera_set: set(gather.camera_samples, 1),
             light_set: set(gather.camera_samples * gather.light_samples, 2),
@@ -116,18 +118,30 @@ impl<'a> Gatherer<'a> {
 ///
 /// # Errors
 /// [`RenderError::Cancelled`]; what is finished is in the film.
-pub fn run(gatherer: &Gatherer<'_>, film: &Film, progress: &Progress) -> Result<RayCounts, RenderError> {
+pub fn run<E: Estimator>(
+    gatherer: &Gatherer<'_, E>,
+    film: &Film,
+    progress: &Progress,
+) -> Result<RayCounts, RenderError> {
     let passes = gatherer.camera_samples;
     let (rays, done) = (Mutex::new(RayCounts::default()), AtomicUsize::new(0));
     let tiles = film.tiles().len();
+    let open = Mutex::new(Vec::new());
     for pass in 0..passes {
         progress.set_passes(pass, passes);
-        let finished = (0..tiles).into_par_iter().try_for_each(|index| {
-            let counts = run_tile(gatherer, pass, film, index, progress)?;
-            *rays.lock().unwrap_or_else(PoisonError::into_inner) += counts;
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            progress.set_fraction(done as f64 / (tiles * passes as usize) as f64);
-            Ok::<(), RenderError>(())
+        let at_once = gatherer.tiles_at_once(film, pass);
+        let finished = (0..tiles).step_by(at_once).try_for_each(|first| {
+            let batch = first..first.saturating_add(at_once).min(tiles);
+            let finished = batch.into_par_iter().try_for_each(|index| {
+                let (counts, unanswered) = run_tile(gatherer, pass, film, index, progress)?;
+                lock(&open).extend(unanswered);
+                *lock(&rays) += counts;
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                progress.set_fraction(done as f64 / (tiles * passes as usize) as f64);
+                Ok::<(), RenderError>(())
+            });
+            gatherer.close(std::mem::take(&mut lock(&open)), film);
+            finished
         });
         film.finish_pass(gatherer.rays_of_pass(pass).len() as u32);
         finished?;
@@ -136,13 +150,16 @@ pub fn run(gatherer: &Gatherer<'_>, film: &Film, progress: &Progress) -> Result<
     Ok(rays.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-fn run_tile(
-    gatherer: &Gatherer<'_>,
+/// Counts of a tile, and the tile itself where its light is not complete.
+type TileOutcome<E> = (RayCounts, Option<OpenTile<<E as Estimator>::Place>>);
+
+fn run_tile<E: Estimator>(
+    gatherer: &Gatherer<'_, E>,
     pass: u32,
     film: &Film,
     index: usize,
     progress: &Progress,
-) -> Result<RayCounts, RenderError> {
+) -> Result<TileOutcome<E>, RenderError> {
     let tile = film.tiles()[index];
     let mut samples = vec![PixelSample::default(); (tile.width * tile.height) as usize];
     let mut block = Block::new(gatherer, pass);
@@ -152,8 +169,16 @@ fn run_tile(
             block.run(x, y, tile, &mut samples);
         }
     }
+    let (counts, deferred) = block.finish();
+    if E::DEFERS {
+        return Ok((counts, Some(OpenTile { index, samples, deferred })));
+    }
     film.take(index, samples);
-    Ok(block.rays())
+    Ok((counts, None))
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Points that the camera and its gather rays see: a pilot that decides how fine the cells are.
