@@ -65,7 +65,7 @@ impl From<Rgb> for SharedExponent {
         let largest = color.max_channel();
         // One more where rounding up would not fit.
         let exponent = (largest * (256.0 / 255.5)).log2().floor() + 1.0;
-        if !(exponent > -127.0) {
+        if exponent <= -127.0 {
             return Self::default();
         }
         let scale = (8.0 - exponent).exp2();

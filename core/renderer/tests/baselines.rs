@@ -1,0 +1,162 @@
+//! The baselines against closed forms, against each other, and bit for bit against themselves.
+
+mod support;
+
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
+use rgp_renderer::scene::{Scene, SceneBuilder};
+use rgp_renderer::settings::{EstimatorKind, RenderSettings};
+use support::*;
+
+const ALL: [EstimatorKind; 7] = [
+    EstimatorKind::Pyramid,
+    EstimatorKind::Pyramid2006,
+    EstimatorKind::PhotonMap,
+    EstimatorKind::PrecomputedIrradiance,
+    EstimatorKind::UniformGrid,
+    EstimatorKind::ReversePhotonMap,
+    EstimatorKind::Path,
+];
+
+fn by(estimator: EstimatorKind, photons: u64, rays: u32) -> RenderSettings {
+    let mut settings = settings(photons, 32, rays);
+    settings.gather.estimator = estimator;
+    settings
+}
+
+/// A sphere of albedo 0.6 with a lamp off its center: E = ρ Φ / ((1 − ρ) A), and no edge to be wrong at. Photons per
+/// disk are 50 of a million, a disk a hundredth of the radius wide.
+#[test]
+fn sphere_with_a_lamp_off_its_center() {
+    let (albedo, flux) = (0.6, 10.0);
+    let ball = sphere(5, 1.0, Vec3::ZERO);
+    let exact = albedo / PI * albedo * flux / ((1.0 - albedo) * area(&ball));
+    let mut builder = SceneBuilder::default();
+    place(&mut builder, ball, &[diffuse(albedo as f32)]);
+    builder.add_lamp(point_lamp(flux as f32, DVec3::new(0.3, 0.1, 0.55)));
+    builder.set_camera(camera(DVec3::new(-0.4, 0.1, 0.0), DVec3::X, 2.0, 24));
+    let scene = builder.finish().expect("a scene");
+    for (estimator, tolerance, noise) in [
+        (EstimatorKind::Path, 0.005, 0.09),
+        (EstimatorKind::PhotonMap, 0.005, 0.03),
+        (EstimatorKind::PrecomputedIrradiance, 0.005, 0.03),
+        (EstimatorKind::ReversePhotonMap, 0.005, 0.03),
+    ] {
+        let pixels = render(&scene, &by(estimator, 400_000, 256)).indirect_radiance();
+        let (mean, rms) = (mean(&pixels) / exact - 1.0, spread(&pixels, exact));
+        assert!(mean.abs() < tolerance && rms < noise, "{estimator:?}: mean {mean:+.4}, rms {rms:.4}");
+    }
+}
+
+/// A box whose walls emit 1 and reflect half: L = 2 everywhere. Disks that reach round an edge lose light there, cells
+/// of the published pyramid that a wall fills in part are dark, and the grid sees both walls of an edge.
+#[test]
+fn furnace_of_albedo_one_half() {
+    let mut builder = SceneBuilder::default();
+    let closed = cuboid(Vec3::new(-1.0, -0.7, 0.0), Vec3::new(1.0, 0.7, 1.2));
+    place(&mut builder, closed, &[emitter(0.5, 1.0)]);
+    builder.set_camera(camera(DVec3::new(-0.8, -0.5, 0.2), DVec3::new(1.0, 0.6, 0.6), 1.5, 24));
+    let scene = builder.finish().expect("a scene");
+    for (estimator, lowest, highest) in [
+        (EstimatorKind::Path, -0.003, 0.003),
+        (EstimatorKind::PhotonMap, -0.01, 0.001),
+        (EstimatorKind::PrecomputedIrradiance, -0.01, 0.001),
+        (EstimatorKind::ReversePhotonMap, -0.01, 0.001),
+        (EstimatorKind::UniformGrid, 0.0, 0.03),
+        (EstimatorKind::Pyramid2006, -0.1, -0.01),
+    ] {
+        let error = mean(&render(&scene, &by(estimator, 400_000, 64)).radiance()) / 2.0 - 1.0;
+        assert!((lowest..highest).contains(&error), "{estimator:?}: {error:+.4}");
+    }
+}
+
+fn room(ball: rgp_renderer::scene::record::MaterialRecord) -> Scene {
+    Room { ball, ..Room::default() }.builder().finish().expect("a scene")
+}
+
+/// Checks the indirect light of a scene, mean over the picture, against that of paths followed to their end.
+fn assert_against_paths(scene: &Scene, allowed: &[(EstimatorKind, f64, f64)]) {
+    let indirect = |estimator, rays| mean(&render(scene, &by(estimator, 400_000, rays)).indirect_radiance());
+    let truth = indirect(EstimatorKind::Path, 2048);
+    for &(estimator, lowest, highest) in allowed {
+        let error = indirect(estimator, 128) / truth - 1.0;
+        assert!((lowest..highest).contains(&error), "{estimator:?}: {error:+.4}");
+    }
+}
+
+/// Coarse cells of a grid without normals hold the light of both walls of an edge, and more of a slanted surface than
+/// their face; those of the published pyramid are dark where a wall fills them in part.
+#[test]
+fn all_agree_with_paths_in_a_room() {
+    assert_against_paths(
+        &room(diffuse(0.5)),
+        &[
+            (EstimatorKind::Pyramid, -0.01, 0.01),
+            (EstimatorKind::PhotonMap, -0.01, 0.01),
+            (EstimatorKind::PrecomputedIrradiance, -0.01, 0.01),
+            (EstimatorKind::ReversePhotonMap, -0.01, 0.01),
+            (EstimatorKind::UniformGrid, 0.02, 0.1),
+            (EstimatorKind::Pyramid2006, -0.1, -0.01),
+        ],
+    );
+}
+
+/// Methods that hold directions follow the glossy ball, the others treat it as diffuse.
+#[test]
+fn all_agree_with_paths_in_a_room_with_a_glossy_ball() {
+    assert_against_paths(
+        &room(glossy(0.8, 0.7)),
+        &[
+            (EstimatorKind::Pyramid, -0.01, 0.01),
+            (EstimatorKind::PhotonMap, -0.01, 0.01),
+            (EstimatorKind::PrecomputedIrradiance, -0.02, 0.02),
+            (EstimatorKind::ReversePhotonMap, -0.02, 0.02),
+            (EstimatorKind::Pyramid2006, -0.1, -0.01),
+        ],
+    );
+}
+
+/// Seven threads on tiles of 20 pixels against one thread on tiles of 64.
+#[test]
+fn the_same_bits_for_any_number_of_threads() {
+    let scene = Room { ball: glossy(0.8, 0.7), pixels: 37, ..Room::default() }.builder().finish();
+    let scene = scene.expect("a scene");
+    for estimator in ALL {
+        let picture = |threads: u32, tile_size: u32| {
+            let mut settings = by(estimator, 50_000, 32);
+            settings.render.threads = threads;
+            settings.film.tile_size = tile_size;
+            render(&scene, &settings)
+        };
+        let (one, other) = (picture(1, 64), picture(7, 20));
+        assert_eq!(one.combined, other.combined, "{estimator:?}");
+        assert_eq!(one.stats.rays, other.stats.rays, "{estimator:?}");
+        assert_eq!(one.stats.photons, other.stats.photons, "{estimator:?}");
+    }
+}
+
+/// The same photons for all, and a name and a size for each.
+#[test]
+fn statistics_tell_them_apart() {
+    let scene = room(glossy(0.8, 0.7));
+    let photons = |estimator| render(&scene, &by(estimator, 50_000, 8)).stats;
+    let pyramid = photons(EstimatorKind::Pyramid);
+    assert_eq!((pyramid.estimator.name, pyramid.estimator.bytes), ("pyramid", pyramid.pyramid.bytes));
+    for estimator in ALL {
+        let stats = photons(estimator);
+        let name = serde_json::to_value(estimator).expect("a word");
+        assert_eq!(name, stats.estimator.name);
+        if estimator == EstimatorKind::Path {
+            assert_eq!((stats.rays.photon, stats.estimator.bytes), (0, 0));
+            continue;
+        }
+        assert_eq!(stats.rays.photon, pyramid.rays.photon, "{estimator:?}");
+        assert_eq!(stats.photons, pyramid.photons, "{estimator:?}");
+        assert!(stats.estimator.bytes > 0 && stats.estimator.seconds > 0.0);
+    }
+    // 28 bytes a photon, and half a byte of tree.
+    let map = photons(EstimatorKind::PhotonMap);
+    let per_photon = map.estimator.bytes as f64 / map.photons.deposited as f64;
+    assert!((28.0..29.0).contains(&per_photon), "{per_photon}");
+}
