@@ -7,7 +7,7 @@ use crate::bsdf::LobeSet;
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
 use crate::lit_scene::{LitScene, Surface};
-use crate::pyramid::Pyramid;
+use crate::pyramid::{Place, Pyramid};
 use crate::sampling::Rng;
 
 /// Reads a finished pyramid.
@@ -16,14 +16,6 @@ pub struct PyramidLookup<'a> {
     pyramid: &'a Pyramid,
     /// Rays shorter than this many cells are followed.
     retrace_distance: f32,
-}
-
-/// What to read: position, normal class and level.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Place {
-    p: Vec3,
-    class: usize,
-    level: usize,
 }
 
 impl<'a> PyramidLookup<'a> {
@@ -50,18 +42,19 @@ impl Estimator for PyramidLookup<'_> {
     fn place(&self, p: Vec3, ng: Vec3, _wo: Vec3, footprint: Footprint) -> Option<Place> {
         let level = self.pyramid.level_for(footprint.area());
         let near = footprint.travelled < self.retrace_distance * self.pyramid.nominal_cell_size(level);
-        (!near).then(|| Place { p, class: self.pyramid.class(ng), level })
+        #[expect(clippy::cast_possible_truncation, reason = "classes and levels are few")]
+        let place = || Place { p, class: self.pyramid.class(ng) as u32, level: level as u32 };
+        (!near).then(place)
     }
 
     #[inline]
     fn read(&self, place: &Place) -> Rgb {
-        self.pyramid.irradiance(place.p, place.class, place.level)
+        self.pyramid.irradiance(place.p, place.class as usize, place.level as usize)
     }
 
     #[inline]
     fn read_all(&self, places: &[Place; LANES], set: &[bool; LANES]) -> [Rgb; LANES] {
-        let (p, class) = (places.map(|place| place.p), places.map(|place| place.class));
-        self.pyramid.irradiances(&p, &class, &places.map(|place| place.level), set)
+        self.pyramid.irradiances(places, set)
     }
 
     /// From the cell's irradiance and, for glossy lobes, its direction bins.

@@ -87,6 +87,17 @@ impl Level {
     }
 }
 
+/// A look-up of irradiance.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Place {
+    /// Where.
+    pub p: Vec3,
+    /// Normal class.
+    pub class: u32,
+    /// Level.
+    pub level: u32,
+}
+
 /// The finished pyramid.
 #[derive(Debug)]
 pub struct Pyramid {
@@ -182,17 +193,11 @@ impl Pyramid {
     /// memory is waited for once and not once per place.
     #[must_use]
     #[inline]
-    pub fn irradiances<const N: usize>(
-        &self,
-        p: &[Vec3; N],
-        class: &[usize; N],
-        level: &[usize; N],
-        set: &[bool; N],
-    ) -> [Rgb; N] {
+    pub fn irradiances<const N: usize>(&self, at: &[Place; N], set: &[bool; N]) -> [Rgb; N] {
         let mut found = [None; N];
         let mut bricks = [(0, 0, 0); N];
         for i in (0..N).filter(|&i| set[i]) {
-            found[i] = self.grid.locate(self.grid.offset(p[i]), level[i]);
+            found[i] = self.grid.locate(self.grid.offset(at[i].p), at[i].level as usize);
         }
         for i in 0..N {
             if let Some((level, cell)) = found[i] {
@@ -203,13 +208,14 @@ impl Pyramid {
         let mut places = [None; N];
         for i in 0..N {
             let (level, brick, bit) = bricks[i];
-            places[i] = found[i].and_then(|_| self.levels[level].index.place(brick, bit, class[i]));
+            places[i] =
+                found[i].and_then(|_| self.levels[level].index.place(brick, bit, at[i].class as usize));
         }
         let mut out = [Rgb::BLACK; N];
         for i in (0..N).filter(|&i| set[i]) {
             out[i] = match places[i].map(|place| &self.levels[bricks[i].0].cells[place]) {
                 Some(cell) if !cell.is_mixed() => cell.irradiance(),
-                _ => self.irradiance(p[i], class[i], level[i]),
+                _ => self.irradiance(at[i].p, at[i].class as usize, at[i].level as usize),
             };
         }
         out
