@@ -54,7 +54,7 @@ pub struct Footprint {
 impl Footprint {
     /// Ω r² (square scene units).
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn area(&self) -> f32 {
         self.solid_angle * self.travelled * self.travelled
     }

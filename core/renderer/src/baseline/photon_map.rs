@@ -1,7 +1,9 @@
 //! The photon map: photons in a kd-tree, the nearest of which are looked up at every gather hit (Jensen 1996; Jensen
 //! 2001, chapter 7).
 //!
-//! A photon takes 28 bytes, as in the paper's comparison: 12 for its position, 12 for its flux, 4 for its direction.
+//! A photon takes 28 bytes, as in the paper's comparison: 12 for its position, 12 for its flux, 4 for its direction. Light
+//! is the flux over the disk that the k-th photon ends, of photons that came from the surface's side; the BSDF is evaluated
+//! for each. Disks that reach round an edge or past a rim are too dark, as in all photon maps.
 
 use std::f32::consts::PI;
 

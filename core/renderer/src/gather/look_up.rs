@@ -38,7 +38,7 @@ impl Estimator for PyramidLookup<'_> {
     type Place = Place;
 
     /// `None` for rays too short for the cell they would read.
-    #[inline]
+    #[inline(always)]
     fn place(&self, p: Vec3, ng: Vec3, _wo: Vec3, footprint: Footprint) -> Option<Place> {
         let level = self.pyramid.level_for(footprint.area());
         let near = footprint.travelled < self.retrace_distance * self.pyramid.nominal_cell_size(level);
@@ -47,12 +47,12 @@ impl Estimator for PyramidLookup<'_> {
         (!near).then(place)
     }
 
-    #[inline]
+    #[inline(always)]
     fn read(&self, place: &Place) -> Rgb {
         self.pyramid.irradiance(place.p, place.class as usize, place.level as usize)
     }
 
-    #[inline]
+    #[inline(always)]
     fn read_all(&self, places: &[Place; LANES], set: &[bool; LANES]) -> [Rgb; LANES] {
         self.pyramid.irradiances(places, set)
     }

@@ -15,7 +15,7 @@ pub(super) struct Readable<P> {
 
 impl<E: Estimator> Gatherer<'_, E> {
     /// What to read for a hit; `None` where there is more to it than a look-up. `solid_angle` is what the ray stands for.
-    #[inline]
+    #[inline(always)]
     pub(super) fn readable(&self, ray: &Ray, hit: &Hit, solid_angle: f32) -> Option<Readable<E::Place>> {
         if self.lit.accel.is_lamp(hit.object) {
             return None;

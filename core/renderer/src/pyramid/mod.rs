@@ -192,7 +192,7 @@ impl Pyramid {
     /// [`Pyramid::irradiance`] of several places at once, where `set`: one step for all before the next, so that the
     /// memory is waited for once and not once per place.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn irradiances<const N: usize>(&self, at: &[Place; N], set: &[bool; N]) -> [Rgb; N] {
         let mut found = [None; N];
         let mut bricks = [(0, 0, 0); N];

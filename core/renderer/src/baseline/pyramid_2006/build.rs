@@ -1,5 +1,6 @@
 //! From photons to cells: the photons sorted as an octree orders its cells, then cell by cell, parents from children.
 
+use glam::{IVec3, Vec3};
 use rayon::prelude::*;
 
 use super::bins::SharedExponent;
@@ -9,24 +10,25 @@ use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::lit_scene::LitScene;
 use crate::math::Frame;
-use glam::{IVec3, Vec3};
 
 /// Below this many photons a cell is built on one thread.
 const PARALLEL: usize = 10_000;
 
 /// Makes the cells of one group of normals.
 pub(super) struct Builder<'a> {
-    pub(super) lattice: &'a Lattice,
-    pub(super) lit: &'a LitScene<'a>,
-    pub(super) photons: &'a [Photon],
-    pub(super) group: usize,
+    lattice: &'a Lattice,
+    lit: &'a LitScene<'a>,
+    photons: &'a [Photon],
+    group: usize,
+    /// Of the bins.
     directions: Vec<Vec3>,
 }
 
 /// A photon by the octree's order of its finest cell.
-pub(super) type Ordered = (u64, u32);
+type Ordered = (u64, u32);
 
 impl<'a> Builder<'a> {
+    /// For the photons of one group among `photons`.
     pub(super) fn new(
         lattice: &'a Lattice,
         lit: &'a LitScene<'a>,
