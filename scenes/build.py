@@ -13,7 +13,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from scenes import common, cornell_box, furnace, glossy_cornell, table, two_rooms
+from scenes import common, cornell_box, furnace, glossy_cornell, nave, table, two_rooms
 
 SCENES = {
     "cornell_box": cornell_box,
@@ -21,6 +21,7 @@ SCENES = {
     "two_rooms": two_rooms,
     "furnace": furnace,
     "table": table,
+    "nave": nave,
 }
 """By the name of the file."""
 KNOWN_ANSWERS = {"two_rooms": two_rooms.known_answer, "furnace": furnace.known_answer}

@@ -37,28 +37,30 @@ TABLE = (1.08, 0.52, 0.75)
 
 
 def walls() -> Shape:
-    """Four walls that overlap in the corners; slot 1 is the ceiling. The wall at low x has the window's opening."""
+    """Four walls that overlap in the corners; slot 1 is the ceiling, slot 2 the dado. The wall at low x has the
+    window's opening. Wall and dado meet behind the chair rail."""
     x0, y0, x1, y1 = ROOM
-    low, half = -WALL, 0.5 * WALL
-    sides = [
-        box((x0 - half, y1, low), (x1 + half, y1 + WALL, HEIGHT + half)),
-        box((x0 - half, y0 - WALL, low), (x1 + half, y0, HEIGHT + half)),
-        box((x1, y0 - WALL, low), (x1 + WALL, y1 + WALL, HEIGHT + half)),
-    ]
-    outer = (y0 - WALL, low, y1 + WALL, HEIGHT + half)
+    half, joint = 0.5 * WALL, DADO - 0.02
+    parts = []
+    for low, high, slot in ((-WALL, joint, 2), (joint + 0.001, HEIGHT + half, 0)):
+        sides = [
+            box((x0 - half, y1, low), (x1 + half, y1 + WALL, high)),
+            box((x0 - half, y0 - WALL, low), (x1 + half, y0, high)),
+            box((x1, y0 - WALL, low), (x1 + WALL, y1 + WALL, high)),
+        ]
+        parts += [in_slot(side, slot) for side in sides]
+    parts.append(in_slot(box((x0 - WALL, y0 - WALL, -WALL), (x0, y1 + WALL, joint)), 2))
+    outer = (y0 - WALL, joint + 0.001, y1 + WALL, HEIGHT + half)
     hole = (WINDOW[0], WINDOW[2], WINDOW[1], WINDOW[3])
     ring = rectangle_rings([(*outer, 0.0), (*outer, WALL), (*hole, WALL), (*hole, 0.0)])
     # The ring lies in x and y: x becomes the world's y, y its z and z its x.
-    pierced = mapped(ring, lambda points: points[:, [2, 0, 1]] + np.array([x0 - WALL, 0.0, 0.0]))
+    parts.append(mapped(ring, lambda points: points[:, [2, 0, 1]] + np.array([x0 - WALL, 0.0, 0.0])))
     ceiling = box((x0 - WALL, y0 - WALL, HEIGHT), (x1 + WALL, y1 + WALL, HEIGHT + WALL))
-    return join([*sides, pierced, in_slot(ceiling, 1)])
+    return join([*parts, in_slot(ceiling, 1)])
 
 
 def moldings() -> Shape:
-    """Skirting board, chair rail and cornice around the room; slot 1 is the painted dado between the lower two.
-
-    Chair rail and dado pass below the window's sill, so nothing has to be cut out.
-    """
+    """Skirting board, chair rail and cornice around the room. The rail passes below the window's sill."""
     skirting = [(0.0, -0.02), (0.022, -0.02), (0.022, 0.10), (0.012, 0.125), (-0.01, 0.125)]
     rail = [
         (0.0, DADO - 0.05),
@@ -70,9 +72,7 @@ def moldings() -> Shape:
     rail.append((-0.01, DADO))
     cornice = [(-0.01, HEIGHT - 0.12), (0.018, HEIGHT - 0.12), (0.026, HEIGHT - 0.10), (0.04, HEIGHT - 0.07)]
     cornice += [(0.07, HEIGHT - 0.035), (0.10, HEIGHT - 0.025), (0.10, HEIGHT + 0.01)]
-    panel = [(0.006, 0.10), (0.006, DADO - 0.03)]
-    parts = [_around_room(profile) for profile in (skirting, rail, cornice)]
-    return join([*parts, in_slot(_around_room(panel), 1)])
+    return join([_around_room(profile) for profile in (skirting, rail, cornice)])
 
 
 def panels() -> Shape:
@@ -85,7 +85,7 @@ def panels() -> Shape:
     low, high = 0.22, DADO - 0.13
     for number in range(count):
         left = x0 + width * number + 0.08
-        rings = [(left + d, low + d, left + width - 0.16 - d, high - d, h + 0.006) for d, h in section]
+        rings = [(left + d, low + d, left + width - 0.16 - d, high - d, h) for d, h in section]
         # x stays, y becomes the world's z, z comes out of the back wall.
         frame = rectangle_rings(rings)
         parts.append(
@@ -94,7 +94,7 @@ def panels() -> Shape:
     depth = (y1 - y0) / count
     for number in range(count):
         left = y0 + depth * number + 0.08
-        rings = [(left + d, low + d, left + depth - 0.16 - d, high - d, h + 0.006) for d, h in section]
+        rings = [(left + d, low + d, left + depth - 0.16 - d, high - d, h) for d, h in section]
         frame = rectangle_rings(rings)
         for wall, out in ((x0, 1.0), (x1, -1.0)):
             side = mapped(frame, lambda points: points[:, [2, 0, 1]])
@@ -103,17 +103,20 @@ def panels() -> Shape:
 
 
 def floor() -> Shape:
-    """Oak boards along x with joints of 2 mm over a dark ground; slots 0 to 2 are three tones, 3 the ground."""
+    """Oak boards along x, their edges eased by 3 mm, as one surface over the ground; slots 0 to 2 are three tones."""
     x0, y0, x1, y1 = ROOM
     random = np.random.default_rng(4)
-    rows = 42
+    rows, ease = 42, 0.003
     width = (y1 - y0) / rows
-    parts = [in_slot(box((x0 - WALL, y0 - WALL, -WALL), (x1 + WALL, y1 + WALL, -0.012)), 3)]
+    parts = []
     for row in range(rows):
-        cuts = [x0 - 0.05, *(x0 + random.uniform(0.6, 1.9) + np.array([0.0, 1.9])), x1 + 0.05]
+        low, high = y0 + row * width, y0 + (row + 1) * width
+        cuts = [x0, *(x0 + random.uniform(0.6, 1.9) + np.array([0.0, 1.9])), x1]
         for left, right in itertools.pairwise(cuts):
-            low = y0 + row * width
-            board = box((left + 0.001, low + 0.001, -0.02), (right - 0.001, low + width - 0.001, 0.0))
+            rim = (left, low, right, high, -ease)
+            top = (left + ease, low + ease, right - ease, high - ease, 0.0)
+            middle = (0.5 * (left + right), 0.5 * (low + high))
+            board = rectangle_rings([rim, top, (*middle, *middle, 0.0)], wrap=False)
             parts.append(in_slot(board, int(random.integers(3))))
     return join(parts)
 

@@ -72,13 +72,6 @@ def mapped(shape: Shape, function: Callable[[Points], Points]) -> Shape:
     return Shape(function(shape.points), shape.faces, shape.slots)
 
 
-def mirrored(shape: Shape, axis: int) -> Shape:
-    """The mirror image across the plane through the origin that `axis` is normal to."""
-    points = shape.points.copy()
-    points[:, axis] *= -1.0
-    return Shape(points, [face[::-1] for face in shape.faces], shape.slots)
-
-
 def rotation(angle: float, axis: int) -> Points:
     """The 3×3 matrix that turns by `angle` (rad) about axis 0, 1 or 2."""
     matrix = np.eye(3)

@@ -13,7 +13,7 @@ import bpy
 from mathutils import Vector
 
 from scenes import common, furniture, tableware
-from scenes.shapes import Shape, add_copies, add_shape, in_slot, join, moved, turned
+from scenes.shapes import Shape, add_copies, add_shape, box, in_slot, join, moved, tube, turned
 
 TOP = furniture.TABLE[2] + 0.0004
 """Height on which things on the table stand, a hair above it (m)."""
@@ -52,10 +52,10 @@ def build_room() -> None:
     white = plain("White paint", (0.80, 0.79, 0.76))
     sage = plain("Sage paint", (0.34, 0.40, 0.33))
     oak = [plain(f"Oak {tone}", (0.42 * tone, 0.27 * tone, 0.15 * tone)) for tone in (0.82, 0.95, 1.08)]
-    add_shape("Walls", furniture.walls(), [plaster, white])
-    add_shape("Moldings", furniture.moldings(), [sage, sage])
+    add_shape("Walls", furniture.walls(), [plaster, white, sage])
+    add_shape("Moldings", furniture.moldings(), [sage])
     add_shape("Panels", furniture.panels(), [sage])
-    add_shape("Floor", furniture.floor(), [*oak, plain("Ground", (0.03, 0.02, 0.015))])
+    add_shape("Floor", furniture.floor(), oak)
     add_shape("Window", furniture.window(), [white])
     low, high = furniture.WINDOW[0], furniture.WINDOW[1]
     linen = plain("Curtain linen", (0.70, 0.62, 0.50))
@@ -157,7 +157,7 @@ def build_middle() -> None:
     for number, (x, y, z) in enumerate(heap):
         fruit = turned(tableware.apple(0.4 + 0.9 * (number % 4)), 2.1 * number, 2)
         add_shape("Apple", moved(fruit, (0.06 + x, -0.02 + y, TOP + z)), [reds[number % 3 == 2], *skins])
-    board = in_slot(furniture.box((-0.21, -0.11, 0.0), (0.21, 0.11, 0.018), 0.004), 0)
+    board = box((-0.21, -0.11, 0.0), (0.21, 0.11, 0.018), 0.004)
     add_shape("Bread board", moved(board, (-0.45, 0.0, TOP), 0.15), [plain("Beech", (0.48, 0.31, 0.17))])
     crust, crumb = plain("Crust", (0.42, 0.20, 0.075)), plain("Crumb", (0.72, 0.60, 0.40))
     add_shape("Loaf", moved(tableware.loaf(), (-0.48, 0.03, TOP + 0.018), 0.2), [crust])
@@ -166,17 +166,15 @@ def build_middle() -> None:
     ]
     add_shape("Slices", moved(join(slices), (-0.36, -0.055, TOP + 0.0185), 0.3), [crust, crumb])
     add_shape("Jug", moved(tableware.jug(), (0.72, 0.06, TOP), 2.5), [blue])
-    vase = moved(tableware.turned_ware(tableware.VASE, 24), (-0.10, 0.10, TOP))
+    vase = moved(tableware.turned_ware(tableware.VASE, 22), (-0.10, 0.10, TOP))
     add_shape("Vase", vase, [shiny("Grey glaze", (0.40, 0.40, 0.37), 0.25)])
-    twigs = [moved(tableware.sprig(0.34 + 0.03 * k, 14, k), (0.0, 0.0, 0.12)) for k in range(4)]
+    twigs = [moved(tableware.sprig(0.34 + 0.03 * k, 12, k), (0.0, 0.0, 0.12)) for k in range(4)]
     wood, green = plain("Twig", (0.13, 0.09, 0.05)), plain("Olive leaf", (0.13, 0.19, 0.085))
     add_shape("Twigs", moved(join(twigs), (-0.10, 0.10, TOP)), [wood, green])
     brass, wax = bpy.data.materials["Brass"], plain("Wax", (0.78, 0.73, 0.60))
     for x, y in ((0.34, 0.12), (-0.80, -0.02)):
         stick = tableware.turned_ware(tableware.CANDLESTICK, 16)
-        candle = furniture.tube(
-            [(0.0, 0.0, 0.15), (0.0, 0.0, 0.36), (0.0, 0.0, 0.368)], [0.0105, 0.0095, 0.004], 12
-        )
+        candle = tube([(0.0, 0.0, 0.15), (0.0, 0.0, 0.36), (0.0, 0.0, 0.368)], [0.0105, 0.0095, 0.004], 12)
         add_shape("Candlestick", moved(join([stick, in_slot(candle, 1)]), (x, y, TOP)), [brass, wax])
 
 

@@ -196,13 +196,13 @@ def jug() -> Shape:
         moved_points[:, 2] += 0.012 * pull
         return moved_points
 
-    body = mapped(turned_ware(JUG, 32), pull_spout)
+    body = mapped(turned_ware(JUG, 30), pull_spout)
     return join([body, handle((0.078, 0.085), (0.048, 0.218), 0.055, 0.0065)])
 
 
 def apple(lean: float) -> Shape:
     """An apple, never quite round; slot 1 is the stem."""
-    body = turned_ware(APPLE, 13)
+    body = turned_ware(APPLE, 12)
 
     def bulge(points: Points) -> Points:
         angle = np.arctan2(points[:, 1], points[:, 0])

@@ -115,7 +115,10 @@ def test_world_object_and_view_layer_panels(scene):
     b_object = build.add_object("Quad", build.quad())
     assert "Shadow" in draw(scene_parts.RGP_PT_object_visibility, object=b_object)
     assert draw(scene_parts.RGP_PT_object_visibility, object=None) is None
-    assert draw(scene_parts.RGP_PT_view_layer_passes, view_layer=scene.view_layers[0]) == ["Indirect"]
+    assert draw(scene_parts.RGP_PT_view_layer_passes, view_layer=scene.view_layers[0]) == [
+        "Indirect",
+        "Error",
+    ]
     assert draw(scene_parts.RGP_PT_view_layer_override, view_layer=scene.view_layers[0]) == [
         "Material Override"
     ]

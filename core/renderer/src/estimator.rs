@@ -20,6 +20,8 @@ use crate::sampling::Rng;
 pub struct Landing<'a> {
     /// The surface; its `bsdf.wo` points to where the photon came from.
     pub surface: &'a Surface<'a>,
+    /// Set of photons it belongs to.
+    pub set: usize,
     /// Flux before the surface's albedo (W).
     pub flux: Rgb,
     /// The photon lights glossy lobes of the surface.

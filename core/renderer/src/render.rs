@@ -14,12 +14,14 @@ use crate::effects_plan::EffectsPlan;
 use crate::error::RenderError;
 use crate::estimator::{Estimator, PhotonSink};
 use crate::film::Film;
-use crate::gather::{self, Gatherer, PyramidLookup, TraceFloor};
+use crate::gather::{self, Gatherer, PyramidLookup, Stop, TraceFloor};
 use crate::light::Lights;
 use crate::lit_scene::LitScene;
 use crate::photon_pass::{self, PyramidDeposits};
 use crate::progress::{Progress, Stage};
-use crate::pyramid::{Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, SurfaceTriangle};
+use crate::pyramid::{
+    Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, SETS, SurfaceTriangle,
+};
 use crate::scene::Scene;
 use crate::settings::{EstimatorKind, RenderSettings, parse_bins};
 use crate::stats::{EstimatorStats, Stats};
@@ -81,6 +83,7 @@ fn passes(
     let lit = light(scene, settings, library, progress)?;
     stats.seconds.accel = clock.elapsed().as_secs_f64();
     stats.effects = lit.plan.report(&stats.seconds);
+
     let work = Work { lit: &lit, settings, film, progress };
     match settings.gather.estimator {
         EstimatorKind::Pyramid => work.pyramid(stats),
@@ -115,8 +118,10 @@ impl Work<'_> {
 
         let [elevation, azimuth] = parse_bins(&settings.pyramid.bins)?;
         let bins = lit.plan.direction_bins.then_some(DirectionBins { elevation, azimuth });
+        // A single pass has nothing to be compared with and reads all photons.
+        let sets = SETS.min(settings.gather.camera_samples as usize);
         let accumulator = Accumulator::new(&layout, lit.lights.total_flux().max_channel(), bins);
-        self.photons(&PyramidDeposits::new(lit, &accumulator), stats)?;
+        self.photons(&PyramidDeposits::new(lit, &accumulator), sets, stats)?;
         stats.photons.deposited = accumulator.deposited();
 
         progress.enter(Stage::Pyramid);
@@ -137,30 +142,36 @@ impl Work<'_> {
         stats.seconds.pyramid += clock.elapsed().as_secs_f64();
         stats.estimator =
             EstimatorStats { name: "pyramid", bytes: stats.pyramid.bytes, seconds: stats.seconds.pyramid };
-        self.gather(&PyramidLookup::new(lit, &pyramid, settings.gather.retrace_distance), stats)
+        let lookup = |set| PyramidLookup::new(lit, pyramid.view(set), settings.gather.retrace_distance);
+        let lookups: [_; SETS] = std::array::from_fn(lookup);
+        self.gather(lookups.each_ref(), stats)
     }
 
-    /// Traces the photons.
-    fn photons(&self, sink: &impl PhotonSink, stats: &mut Stats) -> Result<(), RenderError> {
+    /// Traces the photons, dealt into `sets` sets.
+    fn photons(&self, sink: &impl PhotonSink, sets: usize, stats: &mut Stats) -> Result<(), RenderError> {
         self.progress.enter(Stage::PhotonPass);
         let clock = Instant::now();
-        let seed = self.settings.render.seed;
-        let counts = photon_pass::run(self.lit, &self.settings.photon_pass, seed, sink, self.progress)?;
+        let (photon_pass, seed) = (&self.settings.photon_pass, self.settings.render.seed);
+        let counts = photon_pass::run(self.lit, photon_pass, seed, sets, sink, self.progress)?;
         stats.photons.emitted = counts.emitted;
         stats.rays.photon = counts.segments;
         stats.seconds.photon_pass = clock.elapsed().as_secs_f64();
         Ok(())
     }
 
-    /// Makes the picture.
-    fn gather(&self, estimator: &impl Estimator, stats: &mut Stats) -> Result<(), RenderError> {
+    /// Makes the picture; even and odd passes ask one estimator each.
+    fn gather<E: Estimator>(&self, estimators: [&E; SETS], stats: &mut Stats) -> Result<(), RenderError> {
         self.progress.enter(Stage::Gather);
         let clock = Instant::now();
-        let gatherer = Gatherer::new(self.lit, estimator, self.settings);
-        let gathered = gather::run(&gatherer, self.film, self.progress);
+        let gatherers = estimators.map(|estimator| Gatherer::new(self.lit, estimator, self.settings));
+        let stop = Stop::new(&self.settings.gather, self.progress.elapsed());
+        let gathered = gather::run(&gatherers, self.film, stop, self.progress);
+        stats.error = self.film.picture_error();
         stats.seconds.gather = clock.elapsed().as_secs_f64();
         stats.effects = self.lit.plan.report(&stats.seconds);
-        stats.rays += gathered?;
+        let gathered = gathered?;
+        stats.rays += gathered.rays;
+        stats.stopped_by = gathered.stopped_by;
         Ok(())
     }
 }

@@ -1,6 +1,9 @@
 //! Look-ups that are answered together, for estimators that want many hits at once.
 
+use rayon::prelude::*;
+
 use crate::color::Rgb;
+use crate::error::RenderError;
 use crate::estimator::{Estimator, Footprint, reflectance};
 use crate::film::{Film, PixelSample};
 use crate::lit_scene::Surface;
@@ -44,19 +47,31 @@ pub(super) struct OpenTile<P> {
 }
 
 impl<E: Estimator> Gatherer<'_, E> {
-    /// Tiles of a pass that are answered together.
-    pub(super) fn tiles_at_once(&self, film: &Film, pass: u32) -> usize {
+    /// Runs `work` on every tile of a pass, given its index in the film, in parallel: on all at once, or on so many at a time
+    /// as are answered together.
+    pub(super) fn pass_in_batches(
+        &self,
+        sample: u32,
+        film: &Film,
+        work: impl Fn(usize) -> Result<Option<OpenTile<E::Place>>, RenderError> + Sync,
+    ) -> Result<(), RenderError> {
+        let tiles = film.tiles().len();
+        if !E::DEFERS {
+            return (0..tiles).into_par_iter().try_for_each(|index| work(index).map(|_| ()));
+        }
         let pixels = film.tiles().first().map_or(1, |tile| tile.width as usize * tile.height as usize);
-        let rays = pixels * self.rays_of_pass(pass).len().max(1);
-        if E::DEFERS { (RAYS_AT_ONCE / rays).max(1) } else { usize::MAX }
+        let rays = pixels * self.rays_of_sample(sample).len().max(1);
+        let at_once = (RAYS_AT_ONCE / rays).max(1);
+        (0..tiles).step_by(at_once).try_for_each(|first| {
+            let batch = first..(first + at_once).min(tiles);
+            let open: Result<Vec<_>, _> = batch.into_par_iter().map(&work).collect();
+            self.close(open?.into_iter().flatten().collect(), film);
+            Ok(())
+        })
     }
 
     /// Adds what was deferred to some tiles and gives them to the film.
-    pub(super) fn close(&self, mut tiles: Vec<OpenTile<E::Place>>, film: &Film) {
-        if tiles.is_empty() {
-            return;
-        }
-        tiles.sort_by_key(|tile| tile.index);
+    fn close(&self, tiles: Vec<OpenTile<E::Place>>, film: &Film) {
         let places: Vec<E::Place> =
             tiles.iter().flat_map(|tile| tile.deferred.iter().map(|deferred| deferred.place)).collect();
         let mut answers = self.estimator.answer(&places).into_iter();

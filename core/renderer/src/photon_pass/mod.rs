@@ -18,6 +18,7 @@ use crate::error::RenderError;
 use crate::estimator::{Landing, PhotonSink};
 use crate::lit_scene::{LitScene, lobes_lit, ray_kind};
 use crate::progress::Progress;
+use crate::pyramid::SETS;
 use crate::sampling::PhotonSampler;
 use crate::scene::visibility;
 use crate::settings::PhotonPassSettings;
@@ -42,7 +43,7 @@ pub struct PhotonPassCounts {
     pub segments: u64,
 }
 
-/// Traces the photons with ids in `0..photon_count`.
+/// Traces the photons with ids in `0..photon_count`, dealt in order into `sets` sets.
 ///
 /// # Errors
 /// [`RenderError::Cancelled`].
@@ -50,6 +51,7 @@ pub fn run<S: PhotonSink>(
     lit: &LitScene<'_>,
     settings: &PhotonPassSettings,
     seed: u32,
+    sets: usize,
     sink: &S,
     progress: &Progress,
 ) -> Result<PhotonPassCounts, RenderError> {
@@ -58,14 +60,19 @@ pub fn run<S: PhotonSink>(
         return Ok(PhotonPassCounts::default());
     }
     let (segments, done) = (AtomicU64::new(0), AtomicU64::new(0));
+    let set_of = |id: u64| (id * sets as u64 / count) as usize;
     #[expect(clippy::cast_precision_loss, reason = "a share of at most 10^9 photons")]
-    let tracer = Tracer { lit, sink, share: (1.0 / count as f64) as f32, max_depth: settings.max_depth };
+    let tracers: [Tracer<'_, S>; SETS] = std::array::from_fn(|set| {
+        let first = |set: usize| (set as u64 * count).div_ceil(sets as u64);
+        let share = (1.0 / (first(set + 1) - first(set)).max(1) as f64) as f32;
+        Tracer { lit, sink, set, share, max_depth: settings.max_depth }
+    });
     (0..count.div_ceil(BATCH)).into_par_iter().try_for_each(|batch| {
         progress.check()?;
         let ids = batch * BATCH..((batch + 1) * BATCH).min(count);
         let mut landed = S::Batch::default();
-        let traced: u64 =
-            ids.clone().map(|id| tracer.photon(PhotonSampler::new(id, seed), &mut landed)).sum();
+        let photon = |id| tracers[set_of(id)].photon(PhotonSampler::new(id, seed), &mut landed);
+        let traced: u64 = ids.clone().map(photon).sum();
         sink.finish(batch, landed);
         segments.fetch_add(traced, Ordering::Relaxed);
         let done = done.fetch_add(ids.end - ids.start, Ordering::Relaxed);
@@ -79,7 +86,8 @@ pub fn run<S: PhotonSink>(
 struct Tracer<'a, S> {
     lit: &'a LitScene<'a>,
     sink: &'a S,
-    /// One photon's share of the light.
+    /// Set of its photons, and one photon's share of the light.
+    set: usize,
     share: f32,
     max_depth: u32,
 }
@@ -135,7 +143,8 @@ impl<S: PhotonSink> Tracer<'_, S> {
                 let glossy = bsdf.has(lobes_read(lobes).without(LobeSet::DIFFUSE));
                 let at = if glossy { [sampler.draw(), sampler.draw()] } else { [0.0; 2] };
                 let flux = flux * bsdf.frame.irradiance_factor(-ray.direction);
-                self.sink.land(landed, &Landing { surface: &surface, flux, glossy, at });
+                let landing = Landing { surface: &surface, set: self.set, flux, glossy, at };
+                self.sink.land(landed, &landing);
             }
             let u_lobe = sampler.draw();
             let u = [sampler.draw(), sampler.draw()];

@@ -1,4 +1,7 @@
 //! Renders with a baseline instead of the pyramid: the same passes round another structure.
+//!
+//! Photons are one set here: every pass reads all of them, as the methods are published, so that what the film says about
+//! its error is the noise of the gather alone.
 
 use std::time::Instant;
 
@@ -10,6 +13,7 @@ use crate::baseline::{
 use crate::error::RenderError;
 use crate::estimator::Estimator;
 use crate::progress::Stage;
+use crate::pyramid::SETS;
 use crate::settings::parse_bins;
 use crate::stats::Stats;
 
@@ -53,7 +57,7 @@ impl Work<'_> {
     /// No photons and no structure.
     pub(super) fn path(&self, stats: &mut Stats) -> Outcome {
         stats.estimator.name = "path";
-        self.gather(&Path, stats)
+        self.gather([&Path; SETS], stats)
     }
 
     /// Photons, the structure that `build` makes of them, and the picture from it.
@@ -64,7 +68,7 @@ impl Work<'_> {
         stats: &mut Stats,
     ) -> Outcome {
         let store = PhotonStore::new(self.lit);
-        self.photons(&store, stats)?;
+        self.photons(&store, 1, stats)?;
         self.progress.enter(Stage::Baseline);
         let clock = Instant::now();
         let photons = store.into_photons();
@@ -73,7 +77,7 @@ impl Work<'_> {
         drop(photons);
         stats.estimator.seconds = clock.elapsed().as_secs_f64();
         self.progress.check()?;
-        let gathered = self.gather(&estimator, stats);
+        let gathered = self.gather([&estimator; SETS], stats);
         stats.estimator.bytes = bytes(&estimator);
         gathered
     }

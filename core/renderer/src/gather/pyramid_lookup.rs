@@ -7,13 +7,13 @@ use crate::bsdf::LobeSet;
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
 use crate::lit_scene::{LitScene, Surface};
-use crate::pyramid::{Place, Pyramid};
+use crate::pyramid::{Place, View};
 use crate::sampling::Rng;
 
-/// Reads a finished pyramid.
+/// Reads a finished pyramid as one set of photons filled it.
 pub struct PyramidLookup<'a> {
     lit: &'a LitScene<'a>,
-    pyramid: &'a Pyramid,
+    pyramid: View<'a>,
     /// Rays shorter than this many cells are followed.
     retrace_distance: f32,
 }
@@ -21,7 +21,7 @@ pub struct PyramidLookup<'a> {
 impl<'a> PyramidLookup<'a> {
     /// Look-ups in `pyramid`, which was built for `lit`; rays shorter than `retrace_distance` cells are followed.
     #[must_use]
-    pub const fn new(lit: &'a LitScene<'a>, pyramid: &'a Pyramid, retrace_distance: f32) -> Self {
+    pub const fn new(lit: &'a LitScene<'a>, pyramid: View<'a>, retrace_distance: f32) -> Self {
         Self { lit, pyramid, retrace_distance }
     }
 
