@@ -1,6 +1,7 @@
 """The error of a picture against a reference that is noisy itself."""
 
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 import numpy.typing as npt
@@ -56,7 +57,8 @@ def measured_error(picture: Picture, reference: Reference) -> Error:
     drops out. That is the same as subtracting the noise of `(A + B) / 2` in quadrature.
     """
     a, b = (picture.astype(np.float64) - half for half in (reference.first, reference.second))
-    percent = float(100.0 * np.sqrt(max(np.mean(a * b), 0.0)) / reference.mean)
+    square = max(float(np.mean(a * b)), 0.0)
+    percent = 100.0 * sqrt(square) / reference.mean
     resolves = reference.resolves
     return Error(max(percent, resolves), is_limit=percent < resolves)
 

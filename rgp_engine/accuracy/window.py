@@ -37,7 +37,6 @@ def representative_window(first: Picture, second: Picture, size: tuple[int, int]
 def _window_means(values: npt.NDArray[np.float64], width: int, height: int) -> npt.NDArray[np.float64]:
     """Mean of the window at every place it fits."""
     sums = np.pad(values.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
-    corners = (
-        sums[height:, width:] - sums[:-height, width:] - sums[height:, :-width] + sums[:-height, :-width]
-    )
-    return corners / (width * height)
+    strips = sums[:, width:] - sums[:, :-width]
+    means: npt.NDArray[np.float64] = np.divide(strips[height:] - strips[:-height], width * height)
+    return means

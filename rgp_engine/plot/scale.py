@@ -64,5 +64,5 @@ def number_text(value: float) -> str:
     """Such as "0.05", "256", "20 k" or "4 M"."""
     for size, unit in ((1e9, " G"), (1e6, " M"), (1e4, " k")):
         if abs(value) >= size:
-            return f"{value / (1e3 if size == 1e4 else size):.4g}{unit}"
+            return f"{value / (1e3 if size == 1e4 else size):.3g}{unit}"
     return f"{value:.4g}"

@@ -12,17 +12,16 @@ from .taken_scene import TakenScene
 
 _Settings = dict[str, dict[str, Any]]
 
-# Each half is the mean of parts with seeds of their own. Large ones have fine strata, many tell the time well.
-_PARTS = 8
+# Each half is the mean of parts with seeds of their own: few, as strata are the finer the larger a part is.
+_PARTS = 2
 _LEAST_RAYS, _MOST_RAYS = 32, 1024
-_RAYS_PER_SAMPLE = 2
 
 
 def reference_settings(settings: _Settings, rays: int) -> _Settings:
     """Settings whose picture has no error but noise: light is followed along paths, and nothing is read from cells."""
-    gather = {**settings["gather"], "rays": rays, "camera_samples": rays // _RAYS_PER_SAMPLE}
+    gather = {**settings["gather"], "rays": rays, "camera_samples": rays}
     pyramid = {**settings["pyramid"], "finest_resolution": 256}
-    photon_pass = {**settings["photon_pass"], "photon_count": 4_000_000}
+    photon_pass = {**settings["photon_pass"], "photon_count": 4_000 * rays}
     return {**settings, "gather": gather, "pyramid": pyramid, "photon_pass": photon_pass}
 
 
@@ -43,9 +42,8 @@ class ReferenceMaker:
         """Renders at least one part of each half, and as many as that time allows; yields their number so far."""
         began = time.monotonic()
         self._render()
-        factor = seconds / (2 * _PARTS) / max(time.monotonic() - began, 1e-3)
-        while 2 * self._rays <= min(_LEAST_RAYS * factor, _MOST_RAYS):
-            self._rays *= 2
+        factor = seconds / (2 * _PARTS + 1) / max(time.monotonic() - began, 1e-3)
+        self._rays = min(max(int(_LEAST_RAYS * factor), _LEAST_RAYS), _MOST_RAYS)
         while True:
             for half in (0, 1):
                 self._sums[half] = self._sums[half] + self._render()
