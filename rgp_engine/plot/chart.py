@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
+from math import hypot
 
 from .drawing import Anchor, Box, Color, Disc, Drawing, Item, Line, Point, Text
 from .font import text_width
@@ -22,6 +24,7 @@ _PAPER: Color = (255, 255, 255)
 _LEFT, _RIGHT, _TOP, _BOTTOM = 68, 26, 62, 58
 _TITLE, _TEXT, _SMALL = 17, 13, 12
 _TICK = 5
+_STEP = 4
 
 
 @dataclass(frozen=True)
@@ -165,11 +168,22 @@ class _Sheet:
         yield Line(((_LEFT, y), (right, y)), level.color, 1.0, dash=5.0)
         text = Text(level.text, (right - 4, y - 5), _SMALL, level.color, "end")
         self.taken.append(_extent(text))
+        self._keep_free((_LEFT, y), (right, y))
         yield text
 
     def _lines(self, series: Series) -> Iterable[Item]:
         if series.width and len(series.points) > 1:
-            yield Line(tuple(map(self.at, series.points)), series.color, series.width)
+            points = tuple(map(self.at, series.points))
+            for a, b in pairwise(points):
+                self._keep_free(a, b)
+            yield Line(points, series.color, series.width)
+
+    def _keep_free(self, a: Point, b: Point) -> None:
+        """No label may stand on the line from a to b."""
+        steps = max(round(hypot(b[0] - a[0], b[1] - a[1]) / _STEP), 1)
+        for step in range(steps + 1):
+            x, y = (start + (end - start) * step / steps for start, end in zip(a, b, strict=True))
+            self.taken.append(Box((x - 1, y - 1), (2, 2), _PAPER))
 
     def _points(self, series: Series) -> Iterable[Item]:
         for x, y in map(self.at, series.points):
