@@ -24,8 +24,8 @@ FREE_RANK = 0
 
 PYTHON_RANKS = {
     **dict.fromkeys(("report", "plot"), 0),
-    **dict.fromkeys(("native", "stats", "accuracy", "properties", "preferences"), 1),
-    **dict.fromkeys(("settings", "ui"), 2),
+    **dict.fromkeys(("native", "stats", "settings", "accuracy", "properties", "preferences"), 1),
+    **dict.fromkeys(("operators", "ui"), 2),
     "export": 3,
     **dict.fromkeys(("session", "sweep"), 4),
     "engine": 5,
@@ -34,7 +34,7 @@ PYTHON_RANKS = {
     "__main__": 8,
 }
 # Lower in rank, and still none of the importer's business.
-NEVER = {("ui", "native"), ("properties", "native"), ("preferences", "native")}
+NEVER = {("ui", "native"), ("properties", "native"), ("preferences", "native"), ("operators", "native")}
 # These run and are tested without Blender.
 WITHOUT_BPY = {"report", "native", "settings", "plot", "accuracy"}
 # These serve a final render, whose scene is the depsgraph's and never the window's.

@@ -5,9 +5,13 @@ from pathlib import Path
 from ..plot import Axis, Chart, Label, Level, Series, draw_chart, number_text, rasterize, to_svg, write_png
 from ..plot.chart import BLUE, GREY, ORANGE
 from .front import TARGETS, Row, cheapest
+from .quality import Quality
 from .result import Sweep
 
 SVG, PNG = "accuracy.svg", "accuracy.png"
+IMAGE_NAME = "RGP Accuracy"
+"""Of the plot among Blender's images."""
+
 _PIXELS_PER_UNIT = 2.0
 
 
@@ -49,6 +53,13 @@ def _short(row: Row) -> str:
     return f"{quality.rays} rays, {number_text(quality.photons)} photons"
 
 
+def describe(quality: Quality, *, is_glossy: bool) -> str:
+    """Settings in a few words."""
+    bins = f", bins {quality.bins}" if is_glossy else ""
+    samples = f"{quality.rays} rays, {quality.samples} camera samples"
+    return f"{samples}, {number_text(quality.photons)} photons, finest {quality.finest}{bins}"
+
+
 def table(sweep: Sweep) -> list[str]:
     """The front as lines of text, and the cheapest settings for each target."""
     lines = [_line("error", "time", "rays", "samples", "photons", "finest", "bins", "pyramid")]
@@ -58,9 +69,7 @@ def table(sweep: Sweep) -> list[str]:
         named = (
             " ".join(f"--set {name}={value}" for name, value in row.quality.settings().items()) if row else ""
         )
-        lines.append(
-            f"{target:>4g} %: " + (f"{row.seconds:.3g} s {named}" if row else sweep.not_reached(target))
-        )
+        lines.append(f"{target:>4g} %: " + (f"{row.seconds:.3g} s {named}" if row else sweep.not_reached()))
     return lines
 
 

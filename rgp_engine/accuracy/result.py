@@ -32,8 +32,18 @@ class Sweep:
     rows: list[Row] = field(default_factory=list)
     state: str = "reference"
     """What is under way: "reference", "sweep"; or how it ended: "done", "stopped"."""
+    message: str = ""
+    """What is done, in a few words."""
     runs_total: int = 0
+    """Runs done and planned so far."""
+    seconds_spent: float = 0.0
     seconds_left: float = 0.0
+    """About."""
+
+    @property
+    def fraction(self) -> float:
+        """Done of all, from 0 to 1."""
+        return self.seconds_spent / max(self.seconds_spent + self.seconds_left, 1e-6)
 
     @property
     def front(self) -> list[Row]:
@@ -62,7 +72,9 @@ class Sweep:
             reference=content["reference"],
             rows=[_row(row) for row in content["rows"]],
             state=progress["state"],
+            message=progress["message"],
             runs_total=progress["runs_total"],
+            seconds_spent=progress["seconds_spent"],
             seconds_left=progress["seconds_left"],
         )
 
@@ -79,6 +91,8 @@ class Sweep:
                 "state": self.state,
                 "runs_done": len(self.rows),
                 "runs_total": self.runs_total,
+                "message": self.message,
+                "seconds_spent": round(self.seconds_spent, 1),
                 "seconds_left": round(self.seconds_left, 1),
             },
             "reference": self.reference,
@@ -89,10 +103,10 @@ class Sweep:
 
     def _cheapest(self, target: float) -> dict[str, Any] | str:
         row = cheapest(self.rows, target)
-        return _record(row) if row else self.not_reached(target)
+        return _record(row) if row else self.not_reached()
 
-    def not_reached(self, _target: float) -> str:
-        """Why no row has that error."""
+    def not_reached(self) -> str:
+        """Why no row has an error as small as was asked for."""
         best = min(self.rows, key=lambda row: row.error, default=None)
         if best is None:
             return "not reached: nothing was measured"

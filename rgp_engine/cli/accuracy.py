@@ -1,7 +1,9 @@
 """`accuracy SCENE.blend -o DIR`: what accuracy costs in time, for one scene."""
 
 import argparse
+import os
 import sys
+import threading
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,6 +11,7 @@ from typing import TYPE_CHECKING
 from ..accuracy.figure import table
 from ..native import is_render_error
 from ..report import UserError
+from ..stats import clock
 from . import CommandError, blender_scene
 from .scene_options import add_scene_options, apply_scene_options, resolution
 
@@ -16,6 +19,7 @@ if TYPE_CHECKING:
     from ..accuracy.result import Sweep
 
 _SECONDS, _QUICK_SECONDS = 60.0, 15.0
+_STOP_SECONDS = 5.0
 
 _EPILOG = """\
 Renders a part of the picture with many settings around those of the file (finest level, direction bins where there
@@ -50,6 +54,11 @@ def add_arguments(commands: "argparse._SubParsersAction[argparse.ArgumentParser]
         type=_seconds,
         help=f"time for the reference (default {_SECONDS:g}, with --quick {_QUICK_SECONDS:g})",
     )
+    parser.add_argument(
+        "--until-stdin-ends",
+        action="store_true",
+        help="stop, with what there is, once standard input is closed",
+    )
     parser.add_argument("--quick", action="store_true", help="fewer settings, a coarser reference")
     parser.set_defaults(run=run)
 
@@ -64,17 +73,14 @@ def run(options: argparse.Namespace) -> None:
     blender_scene.register_engine()
     from ..sweep import Request, measure
 
+    if options.until_stdin_ends:
+        threading.Thread(target=_obey, args=(sys.stdin.fileno(),), daemon=True).start()
     b_scene = blender_scene.open_scene(options.scene)
     apply_scene_options(b_scene, options)
     blender_scene.keep_one_layer(b_scene)
     seconds = options.reference_seconds or (_QUICK_SECONDS if options.quick else _SECONDS)
-    began = time.monotonic()
-
-    def report(_sweep: "Sweep", message: str) -> None:
-        print(f"{time.monotonic() - began:6.1f} s  {message}", flush=True)
-
     try:
-        sweep = measure(b_scene, Request(seconds, options.quick, options.crop), folder, report)
+        sweep = measure(b_scene, Request(seconds, options.quick, options.crop), folder, _print_step)
     except OSError as error:
         raise CommandError(f"{folder} cannot be written: {error.strerror}") from error
     except Exception as error:
@@ -84,6 +90,22 @@ def run(options: argparse.Namespace) -> None:
     print("\n".join(table(sweep)))
     if sweep.state == "stopped":
         print(f"stopped after {len(sweep.rows)} runs", file=sys.stderr)
+
+
+def _print_step(sweep: "Sweep") -> None:
+    left = f"{clock(sweep.seconds_left)} left"
+    print(f"{clock(sweep.seconds_spent)}  {sweep.message}, about {left}", flush=True)
+
+
+def _obey(stream: int) -> None:
+    """Stops the sweep once the stream ends; the process too when the sweep does not."""
+    from ..sweep import request_stop
+
+    while os.read(stream, 4096):
+        pass
+    request_stop()
+    time.sleep(_STOP_SECONDS)
+    os._exit(1)
 
 
 def _crop(text: str) -> tuple[int, int] | float:

@@ -12,7 +12,7 @@ import bpy
 
 from .. import native
 from ..accuracy.error import Reference, measured_error
-from ..accuracy.figure import write_figure
+from ..accuracy.figure import describe, write_figure
 from ..accuracy.front import Row
 from ..accuracy.model import Costs, Model
 from ..accuracy.plan import first_round, next_round, within
@@ -24,14 +24,15 @@ from .reference import ReferenceMaker
 from .shot import render
 from .taken_scene import Border, TakenScene, border_of, take_scene
 
-Report = Callable[[Sweep, str], None]
-"""Is told what is done next."""
+Report = Callable[[Sweep], None]
+"""Is told about every step."""
 
 # Pixels of the window: so many to the square.
 _WINDOW, _QUICK_WINDOW = 128, 96
-# Rounds after the first, and their seconds as a part of the reference's.
+# Rounds after the first. Seconds of each at most, and of the first about, as a part of the reference's.
 _ROUNDS, _QUICK_ROUNDS = 2, 1
 _ROUND_SHARE = 0.4
+_FIRST_ROUND_SHARE = 0.6
 # Tiles for each thread, so that none is idle for long.
 _TILES_PER_THREAD = 4
 _SMALLEST_TILE = 8
@@ -143,6 +144,7 @@ class _Run:
         self._folder = folder
         self._report = report
         self._costs: list[Costs] = []
+        self._began = time.monotonic()
         pixels = sweep.window[2] * sweep.window[3]
         self._ratio = sweep.resolution[0] * sweep.resolution[1] / pixels
         tile = max(isqrt(pixels // (_TILES_PER_THREAD * sweep.threads)), _SMALLEST_TILE)
@@ -152,20 +154,22 @@ class _Run:
 
     def go(self, mean: float) -> None:
         """The reference, then the rounds."""
-        reference = self._make_reference(mean)
+        rounds = _QUICK_ROUNDS if self._request.is_quick else _ROUNDS
+        seconds = self._request.reference_seconds
+        reference = self._make_reference(mean, (_FIRST_ROUND_SHARE + rounds * _ROUND_SHARE) * seconds)
         self._sweep.state = "sweep"
-        is_quick = self._request.is_quick
-        base = self._sweep.current
-        self._measure([base], reference, 0.0)
-        self._measure(
-            first_round(base, is_glossy=self._sweep.is_glossy, is_quick=is_quick)[1:], reference, 0.0
-        )
-        for _ in range(_QUICK_ROUNDS if is_quick else _ROUNDS):
-            model = self._model()
+        is_quick, base = self._request.is_quick, self._sweep.current
+        later = rounds * _ROUND_SHARE * seconds
+        self._measure([base], reference, 0.0, later + _FIRST_ROUND_SHARE * seconds)
+        first = first_round(base, is_glossy=self._sweep.is_glossy, is_quick=is_quick)[1:]
+        self._measure(first, reference, _FIRST_ROUND_SHARE * seconds, later)
+        for number in range(rounds):
+            model = Model(self._sweep.rows, self._costs, self._ratio)
             measured = [row.quality for row in self._sweep.rows]
             wanted = next_round(model, base, measured, is_quick=is_quick)
-            chosen = within(model, wanted, _ROUND_SHARE * self._request.reference_seconds)
-            self._measure(chosen, reference, sum(map(model.run_seconds, chosen)))
+            chosen = within(model, wanted, _ROUND_SHARE * seconds)
+            later = (rounds - number - 1) * _ROUND_SHARE * seconds
+            self._measure(chosen, reference, sum(map(model.run_seconds, chosen)), later)
 
     def save(self) -> None:
         """Writes what there is."""
@@ -173,34 +177,28 @@ class _Run:
         if self._sweep.rows:
             write_figure(self._sweep, self._folder)
 
-    def _make_reference(self, mean: float) -> Reference:
+    def _make_reference(self, mean: float, later: float) -> Reference:
         seconds = self._request.reference_seconds
         maker = ReferenceMaker(self._taken, self._settings, self._seed + _REFERENCE_SEED)
-        self._sweep.seconds_left = seconds
-        self._tell(f"making the reference, at most about {seconds:.0f} s")
+        self._tell("making the reference", seconds + later)
         for _ in maker.parts_within(seconds):
             reference = maker.reference(mean)
             self._sweep.reference = maker.description(reference)
-            self._sweep.seconds_left = max(seconds - maker.seconds, 0.0)
-            self._tell(f"reference: {reference.noise:.2g} % noise after {maker.seconds:.0f} s")
+            self._tell(f"reference: {reference.noise:.2g} % noise", max(seconds - maker.seconds, 0.0) + later)
         return reference
 
-    def _measure(self, qualities: list[Quality], reference: Reference, expected: float) -> None:
-        """One row each."""
-        sweep = self._sweep
-        sweep.runs_total = len(sweep.rows) + len(qualities)
+    def _measure(self, qualities: list[Quality], reference: Reference, expected: float, later: float) -> None:
+        """One row each. They should take `expected` seconds, and what follows them `later`."""
+        done = len(self._sweep.rows)
+        self._sweep.runs_total = done + len(qualities)
         began = time.monotonic()
         for number, quality in enumerate(qualities):
-            spent = time.monotonic() - began
-            per_run = spent / number if number else 0.0
-            sweep.seconds_left = (
-                max(expected - spent, 0.0) if expected else per_run * (len(qualities) - number)
-            )
-            self._tell(
-                f"run {len(sweep.rows) + 1} of {sweep.runs_total}, {sweep.seconds_left:.0f} s left: {quality}"
-            )
+            # The expectation counts as one run, beside those that are measured.
+            left = len(qualities) - number
+            per_run = (expected / len(qualities) + time.monotonic() - began) / (number + 1)
+            run = f"run {done + number + 1} of {self._sweep.runs_total}"
+            self._tell(f"{run}: {describe(quality, is_glossy=self._sweep.is_glossy)}", per_run * left + later)
             self._row(quality, reference)
-        sweep.seconds_left = 0.0
 
     def _row(self, quality: Quality, reference: Reference) -> None:
         shot = render(self._taken, quality.put_into(self._settings), self._seed)
@@ -216,9 +214,9 @@ class _Run:
         )
         self._sweep.write(self._folder)
 
-    def _model(self) -> Model:
-        return Model(self._sweep.rows, self._costs, self._ratio)
-
-    def _tell(self, message: str) -> None:
+    def _tell(self, message: str, seconds_left: float) -> None:
+        self._sweep.message = message
+        self._sweep.seconds_spent = time.monotonic() - self._began
+        self._sweep.seconds_left = seconds_left
         self._sweep.write(self._folder)
-        self._report(self._sweep, message)
+        self._report(self._sweep)

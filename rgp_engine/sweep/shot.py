@@ -1,5 +1,6 @@
 """One render of a taken scene."""
 
+import threading
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,6 +9,13 @@ from ..accuracy.error import Picture
 from .taken_scene import TakenScene
 
 _POLL_SECONDS = 0.1
+
+_stop = threading.Event()
+
+
+def request_stop() -> None:
+    """Makes the render under way, and every later one, end as an interrupt does. For other threads."""
+    _stop.set()
 
 
 @dataclass(frozen=True)
@@ -26,7 +34,8 @@ def render(taken: TakenScene, settings: dict[str, dict[str, Any]], seed: int) ->
     session.start()
     try:
         while not session.wait(_POLL_SECONDS):
-            pass
+            if _stop.is_set():
+                raise KeyboardInterrupt
     except BaseException:
         session.cancel()
         raise
