@@ -4,10 +4,10 @@ import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
+from .front import Row
 from .result import FILE, Sweep
 
 _LOG = "log.txt"
-_STOP_SECONDS = 8.0
 
 
 class BackgroundSweep:
@@ -28,7 +28,10 @@ class BackgroundSweep:
     @property
     def is_running(self) -> bool:
         """The process runs."""
-        return self._process.poll() is None
+        if self._process.poll() is None:
+            return True
+        self._close_input()
+        return False
 
     def refresh(self) -> None:
         """Reads what is new."""
@@ -38,7 +41,7 @@ class BackgroundSweep:
     @property
     def error(self) -> str:
         """Why there is no result, in the words of the process; empty while it runs and when it went well."""
-        if self._process.poll() in (None, 0) or self.is_stopped:
+        if self.is_running or self._process.returncode == 0 or self.is_stopped:
             return ""
         lines = (self.folder / _LOG).read_text(errors="replace").splitlines()
         reasons = [line.partition("error: ")[2] for line in lines if line.startswith("error: ")]
@@ -47,14 +50,18 @@ class BackgroundSweep:
     def stop(self) -> None:
         """Asks the process to end with what there is; returns at once."""
         self.is_stopped = True
-        if self._process.stdin is not None:
-            self._process.stdin.close()
+        self._close_input()
 
     def end(self) -> None:
         """Ends the process and waits until it is gone."""
         self.is_stopped = True
         self._process.kill()
-        self._process.communicate()
+        self._process.wait()
+        self._close_input()
+
+    def _close_input(self) -> None:
+        if self._process.stdin is not None:
+            self._process.stdin.close()
 
 
 _last: BackgroundSweep | None = None
@@ -69,3 +76,8 @@ def publish(background: BackgroundSweep) -> None:
 def last() -> BackgroundSweep | None:
     """The sweep that runs or was the last to run in this process; None before the first."""
     return _last
+
+
+def front() -> list[Row]:
+    """Rows worth their time of the last sweep, fastest first."""
+    return _last.sweep.front if _last is not None and _last.sweep is not None else []

@@ -1,11 +1,10 @@
-"""A sweep as a plot and as a table."""
+"""A sweep as a plot."""
 
 from pathlib import Path
 
 from ..plot import Axis, Chart, Label, Level, Series, draw_chart, number_text, rasterize, to_svg, write_png
 from ..plot.chart import BLUE, GREY, ORANGE
 from .front import TARGETS, Row, cheapest
-from .quality import Quality
 from .result import Sweep
 
 SVG, PNG = "accuracy.svg", "accuracy.png"
@@ -51,42 +50,3 @@ def _chart(sweep: Sweep) -> Chart:
 def _short(row: Row) -> str:
     quality = row.quality
     return f"{quality.rays} rays, {number_text(quality.photons)} photons"
-
-
-def describe(quality: Quality, *, is_glossy: bool) -> str:
-    """Settings in a few words."""
-    bins = f", bins {quality.bins}" if is_glossy else ""
-    samples = f"{quality.rays} rays, {quality.samples} camera samples"
-    return f"{samples}, {number_text(quality.photons)} photons, finest {quality.finest}{bins}"
-
-
-def table(sweep: Sweep) -> list[str]:
-    """The front as lines of text, and the cheapest settings for each target."""
-    lines = [_line("error", "time", "rays", "samples", "photons", "finest", "bins", "pyramid")]
-    lines += [_line(*cells(row, is_glossy=sweep.is_glossy)) for row in sweep.front]
-    for target in TARGETS:
-        row = cheapest(sweep.rows, target)
-        named = (
-            " ".join(f"--set {name}={value}" for name, value in row.quality.settings().items()) if row else ""
-        )
-        lines.append(f"{target:>4g} %: " + (f"{row.seconds:.3g} s {named}" if row else sweep.not_reached()))
-    return lines
-
-
-def cells(row: Row, *, is_glossy: bool) -> list[str]:
-    """The cells of a row of the table."""
-    quality = row.quality
-    return [
-        f"{'<' if row.is_limit else ''}{row.error:.2g} %",
-        f"{row.seconds:.3g} s",
-        str(quality.rays),
-        str(quality.samples),
-        number_text(quality.photons),
-        str(quality.finest),
-        quality.bins if is_glossy else "-",
-        f"{row.bytes / 2**20:.1f} MiB",
-    ]
-
-
-def _line(*cells: str) -> str:
-    return "".join(f"{cell:>10}" for cell in cells)

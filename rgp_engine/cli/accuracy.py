@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..accuracy.figure import table
+from ..accuracy.text import table
 from ..native import is_render_error
 from ..report import UserError
 from ..stats import clock
@@ -81,6 +81,8 @@ def run(options: argparse.Namespace) -> None:
     seconds = options.reference_seconds or (_QUICK_SECONDS if options.quick else _SECONDS)
     try:
         sweep = measure(b_scene, Request(seconds, options.quick, options.crop), folder, _print_step)
+    except KeyboardInterrupt as error:
+        raise CommandError("stopped before anything was measured") from error
     except OSError as error:
         raise CommandError(f"{folder} cannot be written: {error.strerror}") from error
     except Exception as error:

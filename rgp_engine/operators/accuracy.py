@@ -14,6 +14,7 @@ from ..accuracy import background
 from ..accuracy.background import BackgroundSweep
 from ..accuracy.figure import IMAGE_NAME, PNG
 from ..accuracy.quality import PLACES
+from ..accuracy.result import Sweep
 from ..properties import ENGINE_ID
 from ..settings import set_core_value
 from ..stats import clock
@@ -119,30 +120,22 @@ class RGP_OT_show_accuracy(Operator):
 
 
 class RGP_OT_apply_accuracy(Operator):
-    """Use these settings for the scene"""
+    """Use the chosen settings for the scene"""
 
     bl_idname = "rgp.apply_accuracy"
     bl_label = "Apply"
-    bl_options = {"REGISTER", "UNDO", "INTERNAL"}  # noqa: RUF012 (Blender's)
-
-    row: bpy.props.IntProperty(name="Row", min=0, options={"SKIP_SAVE"})  # type: ignore[valid-type]
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender's)
 
     @classmethod
     def poll(cls, context: Any) -> bool:
-        """True when there are rows."""
-        last = background.last()
-        return last is not None and last.sweep is not None and bool(last.sweep.rows)
+        """True when a row is chosen."""
+        return bool(context.window_manager.rgp_accuracy.chosen < len(background.front()))
 
     def execute(self, context: Any) -> set[str]:
-        """Sets every setting of the row of the front."""
-        last = background.last()
-        front = last.sweep.front if last is not None and last.sweep is not None else []
-        if self.row >= len(front):
-            self.report({"ERROR"}, f"There is no row {self.row}")
-            return {"CANCELLED"}
-        quality = front[self.row].quality
+        """Sets every setting of the row."""
+        row = background.front()[context.window_manager.rgp_accuracy.chosen]
         for field, (group, name) in PLACES.items():
-            set_core_value(getattr(context.scene.rgp, group), name, getattr(quality, field))
+            set_core_value(getattr(context.scene.rgp, group), name, getattr(row.quality, field))
         return {"FINISHED"}
 
 
@@ -155,8 +148,11 @@ def show_plot(path: Path) -> bool:
     b_image.name = IMAGE_NAME
     # The file is gone when Blender ends; the picture is not.
     b_image.pack()
-    for b_area in _areas("IMAGE_EDITOR"):
+    for b_window, b_area in _areas("IMAGE_EDITOR"):
         b_area.spaces.active.image = b_image
+        b_region = next(b_region for b_region in b_area.regions if b_region.type == "WINDOW")
+        with bpy.context.temp_override(window=b_window, area=b_area, region=b_region):
+            bpy.ops.image.view_all(fit_view=True)
         return True
     return False
 
@@ -169,6 +165,8 @@ def _watch() -> float | None:
     is_under_way = last.is_running
     last.refresh()
     sweep = last.sweep
+    if sweep is not None:
+        _fill_list(sweep)
     text = None
     if is_under_way:
         step = f"{sweep.message}, about {clock(sweep.seconds_left)} left" if sweep else "starting"
@@ -177,15 +175,35 @@ def _watch() -> float | None:
         show_plot(last.folder / PNG)
     for b_workspace in bpy.data.workspaces:
         b_workspace.status_text_set(text)
-    for b_area in _areas("PROPERTIES"):
+    for _, b_area in _areas("PROPERTIES"):
         b_area.tag_redraw()
     return _POLL_SECONDS if is_under_way else None
 
 
-def _areas(kind: str) -> list[Any]:
-    """Areas of a kind in all windows."""
+def _fill_list(sweep: Sweep) -> None:
+    """As many lines as the front has rows. The fastest that is no worse than the current settings is chosen."""
+    front = sweep.front
+    now = next((row.error for row in sweep.rows if row.quality == sweep.current), 0.0)
+    best = next((index for index, row in enumerate(front) if row.error <= now), 0)
+    for b_manager in bpy.data.window_managers:
+        b_list = b_manager.rgp_accuracy
+        if len(b_list.rows) == len(front):
+            continue
+        b_list.rows.clear()
+        for _ in front:
+            b_list.rows.add()
+        b_list.chosen = best
+
+
+def _areas(kind: str) -> list[tuple[Any, Any]]:
+    """Areas of a kind in all windows, each with its window."""
     b_windows = [b_window for b_manager in bpy.data.window_managers for b_window in b_manager.windows]
-    return [b_area for b_window in b_windows for b_area in b_window.screen.areas if b_area.type == kind]
+    return [
+        (b_window, b_area)
+        for b_window in b_windows
+        for b_area in b_window.screen.areas
+        if b_area.type == kind
+    ]
 
 
 def _end() -> None:

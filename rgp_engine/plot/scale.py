@@ -7,6 +7,7 @@ from dataclasses import dataclass
 _STEPS = (1.0, 2.0, 5.0)
 # A logarithmic axis over more decades than this is marked at powers of ten alone.
 _DECADES_IN_STEPS = 2.5
+_LEAST_TICKS = 3
 
 
 @dataclass(frozen=True)
@@ -53,11 +54,12 @@ def linear_ticks(low: float, high: float, count: int = 6) -> list[float]:
 
 
 def log_ticks(low: float, high: float) -> list[float]:
-    """1, 2 and 5 times powers of ten, or powers of ten alone where these would be many."""
+    """1, 2 and 5 times powers of ten; powers of ten alone where these would be many, others where they would be few."""
     steps = _STEPS if math.log10(high / low) <= _DECADES_IN_STEPS else (1.0,)
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     values = [step * 10.0**power for power in powers for step in steps]
-    return [value for value in values if low * (1.0 - 1e-9) <= value <= high * (1.0 + 1e-9)]
+    ticks = [value for value in values if low * (1.0 - 1e-9) <= value <= high * (1.0 + 1e-9)]
+    return ticks if len(ticks) >= _LEAST_TICKS else linear_ticks(low, high)
 
 
 def number_text(value: float) -> str:

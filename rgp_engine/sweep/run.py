@@ -12,12 +12,13 @@ import bpy
 
 from .. import native
 from ..accuracy.error import Reference, measured_error
-from ..accuracy.figure import describe, write_figure
+from ..accuracy.figure import write_figure
 from ..accuracy.front import Row
 from ..accuracy.model import Costs, Model
 from ..accuracy.plan import first_round, next_round, within
 from ..accuracy.quality import Quality
 from ..accuracy.result import Sweep
+from ..accuracy.text import describe
 from ..accuracy.window import Window, representative_window
 from ..report import UserError
 from .reference import ReferenceMaker

@@ -2,18 +2,46 @@
 
 from typing import Any
 
-from bpy.types import Panel
+from bpy.types import Panel, UIList
 
 from ..accuracy import background
-from ..accuracy.figure import IMAGE_NAME, cells
+from ..accuracy.figure import IMAGE_NAME
 from ..accuracy.quality import Quality
 from ..accuracy.result import Sweep
+from ..accuracy.text import described, error_text
 from ..report import last_outcome
 from ..settings import core_settings
 from ..stats import clock
 from .base import ClosedEnginePanel
 
-_HEADS = ("Error", "Time", "Rays", "Samples", "Photons", "Finest", "Bins")
+_MIN_LINES, _MAX_LINES = 4, 12
+
+
+class RGP_UL_accuracy(UIList):
+    """Error, time and rays of settings worth their time."""
+
+    def draw_item(
+        self,
+        context: Any,
+        layout: Any,
+        data: Any,
+        item: Any,
+        icon: Any,
+        active: Any,
+        name: Any,
+        index: int = 0,
+    ) -> None:
+        """Draws a line."""
+        front = background.front()
+        if index >= len(front):
+            return
+        row = front[index]
+        is_current = row.quality == Quality.of(core_settings(context.scene))
+        line = layout.split(factor=0.4)
+        line.label(text=error_text(row), icon="CHECKMARK" if is_current else "BLANK1")
+        line = line.split(factor=0.45)
+        line.label(text=f"{row.seconds:.3g} s")
+        line.label(text=f"{row.quality.rays} rays")
 
 
 class RGP_PT_accuracy(ClosedEnginePanel, Panel):
@@ -36,9 +64,7 @@ class RGP_PT_accuracy(ClosedEnginePanel, Panel):
             if last is not None and last.error:
                 layout.label(text=last.error, icon="CANCEL")
         if last is not None and last.sweep is not None and last.sweep.rows:
-            _draw_front(layout, last.sweep, Quality.of(core_settings(context.scene)))
-            layout.operator("rgp.show_accuracy", icon="IMAGE_DATA")
-            layout.label(text=f"The plot is the image '{IMAGE_NAME}'")
+            _draw_front(layout, last.sweep, context.window_manager.rgp_accuracy)
 
 
 def _draw_last_render(layout: Any) -> None:
@@ -59,25 +85,20 @@ def _draw_progress(layout: Any, sweep: Sweep | None) -> None:
         layout.label(text=sweep.message[:1].upper() + sweep.message[1:])
 
 
-def _draw_front(layout: Any, sweep: Sweep, current: Quality) -> None:
-    """One line for each settings worth their time, with a button that applies them."""
-    heads = _HEADS if sweep.is_glossy else _HEADS[:-1]
-    column = layout.box().column(align=True)
-    _draw_line(column, list(heads)).label(text="", icon="BLANK1")
-    for index, row in enumerate(sweep.front):
-        line = _draw_line(column, cells(row, is_glossy=sweep.is_glossy)[: len(heads)])
-        is_current = row.quality == current
-        icon = "CHECKMARK" if is_current else "IMPORT"
-        line.operator("rgp.apply_accuracy", text="", icon=icon, emboss=not is_current).row = index
-    layout.label(text=f"Less the noise of the reference, {sweep.reference['noise']:.2g} %")
+def _draw_front(layout: Any, sweep: Sweep, b_list: Any) -> None:
+    """The list, the chosen settings in full, and the buttons."""
+    front = sweep.front
+    lines = min(max(len(front), _MIN_LINES), _MAX_LINES)
+    layout.template_list("RGP_UL_accuracy", "", b_list, "rows", b_list, "chosen", rows=lines, sort_lock=True)
+    if b_list.chosen < len(front):
+        column = layout.column(align=True)
+        for name, value in described(front[b_list.chosen], is_glossy=sweep.is_glossy):
+            split = column.split(factor=0.6)
+            split.label(text=name)
+            split.label(text=value)
+    layout.operator("rgp.apply_accuracy", icon="CHECKMARK")
+    layout.operator("rgp.show_accuracy", icon="IMAGE_DATA")
+    layout.label(text=f"The plot is the image '{IMAGE_NAME}'")
 
 
-def _draw_line(column: Any, texts: list[str]) -> Any:
-    line = column.row(align=True)
-    grid = line.grid_flow(columns=len(texts), even_columns=True, align=True, row_major=True)
-    for text in texts:
-        grid.label(text=text)
-    return line
-
-
-CLASSES = (RGP_PT_accuracy,)
+CLASSES = (RGP_UL_accuracy, RGP_PT_accuracy)

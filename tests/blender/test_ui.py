@@ -24,6 +24,10 @@ class Layout:
     def label(self, text="", **_):
         self.texts.append(text)
 
+    def progress(self, text="", factor=0.0, **_):
+        assert 0.0 <= factor <= 1.0
+        self.texts.append(text)
+
     def operator(self, name, **_):
         group, _, function = name.partition(".")
         assert hasattr(getattr(bpy.ops, group), function)
