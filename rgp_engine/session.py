@@ -32,6 +32,7 @@ class RenderSession:
         self._log = ProblemLog()
         self._exported: ExportedScene | None = None
         self._memory_peak = 0
+        self._error_target = 0.0
         self._stats: dict[str, Any] = {}
         self._error = ""
         self._cancelled = False
@@ -72,6 +73,7 @@ class RenderSession:
         scene = exported.finish((b_result.resolution_x, b_result.resolution_y))
         self._log.add_records(scene.problems)
         settings = core_settings(self._b_depsgraph.scene_eval)
+        self._error_target = settings["gather"]["error_target"]
         core_session = native.core().Session(scene, settings, str(native.embree_library()))
         core_session.start()
         try:
@@ -115,6 +117,8 @@ class RenderSession:
         if left is not None:
             self._engine.update_progress(elapsed / max(elapsed + left, 1e-6))
             status += f" | Remaining {stats.clock(left)}"
+        if progress["error"] is not None:
+            status += f" | Error {stats.outlook(progress, self._error_target)}"
         self._engine.update_memory_stats(memory_used=memory / 2**20, memory_peak=self._memory_peak / 2**20)
         self._engine.update_stats("", f"{status} | Mem {memory / 2**20:.0f} MiB")
 
@@ -150,7 +154,7 @@ class RenderSession:
 def _write_passes(core_session: "rgp_core.Session", b_result: Any) -> None:
     """All passes of the result that the core has a picture for."""
     names = {b_pass.name for b_pass in b_result.layers[0].passes}
-    for name, layer in (("Combined", "combined"), ("Indirect", "indirect")):
+    for name, layer in (("Combined", "combined"), ("Indirect", "indirect"), ("Error", "error")):
         if name in names:
             _write_pass(b_result, name, core_session.picture(layer))
 

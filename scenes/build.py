@@ -13,13 +13,15 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from scenes import common, cornell_box, furnace, glossy_cornell, two_rooms
+from scenes import common, cornell_box, furnace, glossy_cornell, nave, table, two_rooms
 
 SCENES = {
     "cornell_box": cornell_box,
     "glossy_cornell": glossy_cornell,
     "two_rooms": two_rooms,
     "furnace": furnace,
+    "table": table,
+    "nave": nave,
 }
 """By the name of the file."""
 KNOWN_ANSWERS = {"two_rooms": two_rooms.known_answer, "furnace": furnace.known_answer}

@@ -93,11 +93,13 @@ class Session:
         """True once the render has ended: finished, cancelled or failed."""
 
     def progress(self) -> dict[str, Any]:
-        """{"stage", "fraction", "passes_done", "passes_total", "seconds_elapsed", "seconds_left", "memory_bytes"};
-        seconds_left is None while unknown."""
+        """{"stage", "fraction", "passes_done", "passes_total", "seconds_elapsed", "seconds_left", "error", "error_at_end",
+        "seconds_to_target", "memory_bytes"}; seconds_left, error (% of the picture's mean) and error_at_end are None while
+        unknown, seconds_to_target also where there is no target or it will not be reached."""
 
     def picture(self, layer: str) -> npt.NDArray[np.float32]:
-        """Mean of the passes so far, rows from the bottom: "combined" (H, W, 4), "indirect" (H, W, 3)."""
+        """Mean of the passes so far, rows from the bottom: "combined" (H, W, 4), "indirect" (H, W, 3); "error"
+        (H, W, 1) is the standard error of combined."""
 
     def stats(self) -> dict[str, Any]:
         """The stats file's content, less what only the host knows (seconds.export, versions of Blender)."""

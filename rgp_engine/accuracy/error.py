@@ -7,6 +7,11 @@ import numpy as np
 import numpy.typing as npt
 
 Picture = npt.NDArray[np.float32]
+_Floats = npt.NDArray[np.float64]
+
+CLIPPED_AT = 8.0
+"""Times the picture's mean: what is brighter is white in any case, and pixels at the edge of a lamp would drown
+the error of all others. The same as in the statistics of a render."""
 
 # Noise of neighboring pixels is alike, as the pixel filter shares their samples; that of blocks is not.
 _BLOCK = 8
@@ -15,19 +20,37 @@ _CERTAINTY = 2.0
 
 
 @dataclass(frozen=True)
+class Means:
+    """Of the whole picture, of which a part is measured: what errors are percentages of."""
+
+    mean: float
+    clipped: float
+    """Of the picture clipped at `CLIPPED_AT`."""
+
+    @classmethod
+    def of(cls, picture: Picture) -> "Means":
+        """Those of a picture."""
+        mean = float(picture.mean(dtype=np.float64))
+        return cls(mean, float(np.minimum(picture, CLIPPED_AT * mean).mean(dtype=np.float64)))
+
+    def clip(self, picture: Picture) -> _Floats:
+        """The picture, clipped."""
+        return np.minimum(picture, CLIPPED_AT * self.mean, dtype=np.float64)
+
+
+@dataclass(frozen=True)
 class Reference:
     """Two independent, unbiased pictures of the same, (height, width, 3)."""
 
     first: Picture
     second: Picture
-    mean: float
-    """Mean of the whole picture: what errors are percentages of."""
+    means: Means
 
     @property
     def noise(self) -> float:
-        """Noise of the mean of both, in percent."""
-        half = (self.first.astype(np.float64) - self.second) / 2.0
-        return float(100.0 * np.sqrt(np.mean(half**2)) / self.mean)
+        """Noise of the mean of both, clipped, in percent."""
+        half = (self.means.clip(self.first) - self.means.clip(self.second)) / 2.0
+        return float(100.0 * np.sqrt(np.mean(half**2)) / self.means.clipped)
 
     @property
     def resolves(self) -> float:
@@ -36,18 +59,22 @@ class Reference:
         The noise of both halves gives `measured_error` a product of the two, which has no mean but spreads by the
         variance of a half, block by block.
         """
-        variances = _block_means(((self.first.astype(np.float64) - self.second) ** 2 / 2.0).mean(axis=2))
+        difference = self.means.clip(self.first) - self.means.clip(self.second)
+        variances = _block_means((difference**2 / 2.0).mean(axis=2))
         spread = np.sqrt(np.mean(variances**2) / variances.size)
-        return float(100.0 * np.sqrt(_CERTAINTY * spread) / self.mean)
+        return float(100.0 * np.sqrt(_CERTAINTY * spread) / self.means.clipped)
 
 
 @dataclass(frozen=True)
 class Error:
-    """Root mean square error, % of the mean: `rms_mean` of the command `compare`, less the reference's noise."""
+    """Root mean square error of a picture."""
 
     percent: float
+    """Of the clipped picture, as `rms_clipped` of a render's statistics and of the command `compare`: % of its mean."""
     is_limit: bool
     """The reference cannot tell it from a smaller one, down to none."""
+    rms_mean: float
+    """Of the picture as it is, as `rms_mean` of the command `compare`: % of its mean."""
 
 
 def measured_error(picture: Picture, reference: Reference) -> Error:
@@ -56,14 +83,19 @@ def measured_error(picture: Picture, reference: Reference) -> Error:
     With halves A and B, `(picture - A)(picture - B)` has the mean of the squared true error: the noise of the reference
     drops out. That is the same as subtracting the noise of `(A + B) / 2` in quadrature.
     """
-    a, b = (picture.astype(np.float64) - half for half in (reference.first, reference.second))
-    square = max(float(np.mean(a * b)), 0.0)
-    percent = 100.0 * sqrt(square) / reference.mean
-    resolves = reference.resolves
-    return Error(max(percent, resolves), is_limit=percent < resolves)
+    means = reference.means
+    plain = _rms(*(part.astype(np.float64) for part in (picture, reference.first, reference.second)))
+    clipped = _rms(*map(means.clip, (picture, reference.first, reference.second)))
+    percent, resolves = 100.0 * clipped / means.clipped, reference.resolves
+    return Error(max(percent, resolves), is_limit=percent < resolves, rms_mean=100.0 * plain / means.mean)
 
 
-def _block_means(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _rms(picture: _Floats, first: _Floats, second: _Floats) -> float:
+    """Root mean square difference of a picture from the mean of two halves, less their noise."""
+    return sqrt(max(float(np.mean((picture - first) * (picture - second))), 0.0))
+
+
+def _block_means(values: _Floats) -> _Floats:
     """Means of square blocks; the last ones of a row or column may be smaller."""
     for axis in (0, 1):
         starts = np.arange(0, values.shape[axis], _BLOCK)

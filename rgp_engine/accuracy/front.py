@@ -17,9 +17,11 @@ class Row:
     seconds: float
     """Predicted for the whole picture."""
     error: float
-    """%."""
+    """%; see `Error.percent`."""
     is_limit: bool
     """The reference cannot tell the error from a smaller one."""
+    rms_mean: float
+    """%; see `Error.rms_mean`."""
     bytes: int
     """Memory of the pyramid."""
 

@@ -121,10 +121,11 @@ def _record(row: Row) -> dict[str, Any]:
         "seconds": row.seconds,
         "error": row.error,
         "is_limit": row.is_limit,
+        "rms_mean": row.rms_mean,
         "bytes": row.bytes,
     }
 
 
 def _row(record: Mapping[str, Any]) -> Row:
     quality = Quality.from_settings(record["settings"])
-    return Row(quality, record["seconds"], record["error"], record["is_limit"], record["bytes"])
+    return Row(quality, **{name: value for name, value in record.items() if name != "settings"})

@@ -33,6 +33,26 @@ class RGPGatherSettings(bpy.types.PropertyGroup):
         min=1,
         max=64,
     )
+    time_limit: bpy.props.FloatProperty(
+        name="Time Limit",
+        description="The render ends with the pass over the picture that fits into this time; at least two are made; "
+        "0 for no limit",
+        default=0.0,
+        min=0.0,
+        max=1e9,
+        soft_max=3600.0,
+        unit="TIME_ABSOLUTE",
+    )
+    error_target: bpy.props.FloatProperty(
+        name="Error Target",
+        description="The render ends when its noise falls below this share of the picture's mean; 0 to trace all rays",
+        default=0.0,
+        min=0.0,
+        max=100.0,
+        soft_max=10.0,
+        precision=2,
+        subtype="PERCENTAGE",
+    )
     sampling: bpy.props.EnumProperty(
         name="Sampling",
         description="Gather rays follow the surface's reflection (cosine), or are uniform over the hemisphere "

@@ -22,3 +22,9 @@ class RGPViewLayerSettings(bpy.types.PropertyGroup):
         default=False,
         update=_update_passes,
     )
+    use_pass_error: bpy.props.BoolProperty(
+        name="Error",
+        description="Deliver the noise of the picture, the standard error of every pixel, as a pass of its own",
+        default=False,
+        update=_update_passes,
+    )

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..accuracy.error import Picture, Reference
+from ..accuracy.error import Means, Picture, Reference
 from .shot import render
 from .taken_scene import TakenScene
 
@@ -57,10 +57,10 @@ class ReferenceMaker:
         self._seed += 1
         return render(self._taken, reference_settings(self._settings, self._rays), self._seed).picture
 
-    def reference(self, mean: float) -> Reference:
-        """What there is, for a picture of that mean."""
+    def reference(self, means: Means) -> Reference:
+        """What there is, for a picture of those means."""
         first, second = (np.asarray(part, np.float32) / np.float32(self.parts) for part in self._sums)
-        return Reference(first, second, mean)
+        return Reference(first, second, means)
 
     def description(self, reference: Reference) -> dict[str, Any]:
         """How it was made and how noisy it is (%)."""

@@ -11,7 +11,7 @@ from typing import Any
 import bpy
 
 from .. import native
-from ..accuracy.error import Reference, measured_error
+from ..accuracy.error import Means, Reference, measured_error
 from ..accuracy.figure import write_figure
 from ..accuracy.front import Row
 from ..accuracy.model import Costs, Model
@@ -63,7 +63,7 @@ def measure(b_scene: Any, request: Request, folder: Path, report: Report) -> Swe
     """
     border = border_of(b_scene)
     whole = take_scene(b_scene, border)
-    resolution, window, mean = _look(whole, request)
+    resolution, window, means = _look(whole, request)
     is_whole = (window.width, window.height) == resolution
     taken = whole if is_whole else take_scene(b_scene, _border_part(border, window, resolution))
     sweep = Sweep(
@@ -77,7 +77,7 @@ def measure(b_scene: Any, request: Request, folder: Path, report: Report) -> Swe
     )
     run = _Run(sweep, taken, whole.seconds, request, folder, report)
     try:
-        run.go(mean)
+        run.go(means)
         sweep.state = "done"
     except KeyboardInterrupt:
         sweep.state = "stopped"
@@ -85,8 +85,8 @@ def measure(b_scene: Any, request: Request, folder: Path, report: Report) -> Swe
     return sweep
 
 
-def _look(whole: TakenScene, request: Request) -> tuple[tuple[int, int], Window, float]:
-    """Size of the picture, the window, and the mean of the picture."""
+def _look(whole: TakenScene, request: Request) -> tuple[tuple[int, int], Window, Means]:
+    """Size of the picture, the window, and the means of the picture."""
     settings, seed = whole.settings, whole.settings["render"]["seed"] + _PILOT_SEED
     rays = Quality.of(settings)
     pilot = replace(rays, photons=_PILOT_PHOTONS, rays=_PILOT_RAYS_PER_SAMPLE, samples=1)
@@ -96,11 +96,12 @@ def _look(whole: TakenScene, request: Request) -> tuple[tuple[int, int], Window,
         pilot = replace(pilot, rays=_PILOT_RAYS_PER_SAMPLE * _PILOT_SAMPLES, samples=_PILOT_SAMPLES)
         first = render(whole, pilot.put_into(settings), seed % _SEEDS).picture
     second = render(whole, pilot.put_into(settings), (seed + 1) % _SEEDS).picture
-    mean = float((first.mean(dtype=float) + second.mean(dtype=float)) / 2.0)
-    if mean <= 0.0:
+    means = Means.of((first + second) / 2.0)
+    if means.mean <= 0.0:
         raise UserError("The picture is black: errors relative to it mean nothing")
     size = _window_size((width, height), request)
-    return (width, height), representative_window(first, second, size), mean
+    window = representative_window(means.clip(first), means.clip(second), size)
+    return (width, height), window, means
 
 
 def _window_size(resolution: tuple[int, int], request: Request) -> tuple[int, int]:
@@ -150,14 +151,17 @@ class _Run:
         self._ratio = sweep.resolution[0] * sweep.resolution[1] / pixels
         tile = max(isqrt(pixels // (_TILES_PER_THREAD * sweep.threads)), _SMALLEST_TILE)
         film = taken.settings["film"]
-        self._settings = {**taken.settings, "film": {**film, "tile_size": min(tile, film["tile_size"])}}
+        # Every run does all that its settings ask for.
+        gather = {**taken.settings["gather"], "time_limit": 0.0, "error_target": 0.0}
+        film = {**film, "tile_size": min(tile, film["tile_size"])}
+        self._settings = {**taken.settings, "gather": gather, "film": film}
         self._seed = int(taken.settings["render"]["seed"])
 
-    def go(self, mean: float) -> None:
+    def go(self, means: Means) -> None:
         """The reference, then the rounds."""
         rounds = _QUICK_ROUNDS if self._request.is_quick else _ROUNDS
         seconds = self._request.reference_seconds
-        reference = self._make_reference(mean, (_FIRST_ROUND_SHARE + rounds * _ROUND_SHARE) * seconds)
+        reference = self._make_reference(means, (_FIRST_ROUND_SHARE + rounds * _ROUND_SHARE) * seconds)
         self._sweep.state = "sweep"
         is_quick, base = self._request.is_quick, self._sweep.current
         later = rounds * _ROUND_SHARE * seconds
@@ -178,12 +182,12 @@ class _Run:
         if self._sweep.rows:
             write_figure(self._sweep, self._folder)
 
-    def _make_reference(self, mean: float, later: float) -> Reference:
+    def _make_reference(self, means: Means, later: float) -> Reference:
         seconds = self._request.reference_seconds
         maker = ReferenceMaker(self._taken, self._settings, self._seed + _REFERENCE_SEED)
         self._tell("making the reference", seconds + later)
         for _ in maker.parts_within(seconds):
-            reference = maker.reference(mean)
+            reference = maker.reference(means)
             self._sweep.reference = maker.description(reference)
             self._tell(f"reference: {reference.noise:.2g} % noise", max(seconds - maker.seconds, 0.0) + later)
         return reference
@@ -207,12 +211,17 @@ class _Run:
         seconds = shot.stats["seconds"]
         rest = self._export_seconds + seconds["total"] - seconds["photon_pass"] - seconds["gather"]
         costs = Costs(seconds["photon_pass"], seconds["gather"], rest)
-        whole = costs.photon_pass + costs.gather * self._ratio + costs.rest
         self._costs.append(costs)
         self._sweep.is_glossy |= shot.stats["pyramid"]["glossy_cells"] > 0
-        self._sweep.rows.append(
-            Row(quality, whole, error.percent, error.is_limit, shot.stats["pyramid"]["bytes"])
+        row = Row(
+            quality,
+            seconds=costs.photon_pass + costs.gather * self._ratio + costs.rest,
+            error=error.percent,
+            is_limit=error.is_limit,
+            rms_mean=error.rms_mean,
+            bytes=shot.stats["pyramid"]["bytes"],
         )
+        self._sweep.rows.append(row)
         self._sweep.write(self._folder)
 
     def _tell(self, message: str, seconds_left: float) -> None:

@@ -73,7 +73,9 @@ def _draw_last_render(layout: Any) -> None:
     error = outcome.stats.get("error") if outcome else None
     if outcome and error:
         seconds = outcome.stats["seconds"]["total"]
-        layout.label(text=f"Last render: {error['rms_mean']:.2g} % in {seconds:.3g} s", icon="RENDER_STILL")
+        layout.label(
+            text=f"Last render: {error['rms_clipped']:.2g} % in {seconds:.3g} s", icon="RENDER_STILL"
+        )
 
 
 def _draw_progress(layout: Any, sweep: Sweep | None) -> None:

@@ -42,8 +42,21 @@ class RGP_PT_gather(EnginePanel, Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        names = ("rays", "camera_samples", "light_samples", "sampling", "retrace_distance", "max_depth")
-        draw_settings(self.layout, context.scene.rgp.gather, *names)
+        b_gather = context.scene.rgp.gather
+        draw_settings(self.layout, b_gather, "rays", "camera_samples", "light_samples")
+        draw_settings(self.layout, b_gather, "sampling", "retrace_distance", "max_depth")
+
+
+class RGP_PT_stop(EnginePanel, Panel):
+    """What ends the gather before all rays are traced."""
+
+    bl_label = "Stop When"
+    bl_context = "render"
+    bl_parent_id = "RGP_PT_gather"
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        draw_settings(self.layout, context.scene.rgp.gather, "time_limit", "error_target")
 
 
 class RGP_PT_film(ClosedEnginePanel, Panel):
@@ -74,6 +87,7 @@ CLASSES = (
     RGP_PT_photons,
     RGP_PT_pyramid,
     RGP_PT_gather,
+    RGP_PT_stop,
     RGP_PT_film,
     RGP_PT_performance,
 )

@@ -59,7 +59,7 @@ class RGP_PT_view_layer_passes(EnginePanel, Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        draw_settings(self.layout, context.view_layer.rgp, "use_pass_indirect")
+        draw_settings(self.layout, context.view_layer.rgp, "use_pass_indirect", "use_pass_error")
 
 
 class RGP_PT_view_layer_override(ClosedEnginePanel, Panel):

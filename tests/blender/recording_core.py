@@ -97,12 +97,15 @@ class Session:
             "passes_total": 64,
             "seconds_elapsed": Core.seconds - left,
             "seconds_left": left,
+            "error": 0.8,
+            "error_at_end": 0.4,
+            "seconds_to_target": None,
             "memory_bytes": 3 << 20,
         }
 
     def picture(self, layer: str) -> Any:
         _, _, width, height = self._region
-        channels, value = {"combined": (4, 0.25), "indirect": (3, 0.125)}[layer]
+        channels, value = {"combined": (4, 0.25), "indirect": (3, 0.125), "error": (1, 0.01)}[layer]
         return np.full((height, width, channels), value, np.float32)
 
     def stats(self) -> dict[str, Any]:

@@ -122,7 +122,10 @@ def test_world_object_and_view_layer_panels(scene):
     b_object = build.add_object("Quad", build.quad())
     assert "Shadow" in draw(scene_parts.RGP_PT_object_visibility, object=b_object)
     assert draw(scene_parts.RGP_PT_object_visibility, object=None) is None
-    assert draw(scene_parts.RGP_PT_view_layer_passes, view_layer=scene.view_layers[0]) == ["Indirect"]
+    assert draw(scene_parts.RGP_PT_view_layer_passes, view_layer=scene.view_layers[0]) == [
+        "Indirect",
+        "Error",
+    ]
     assert draw(scene_parts.RGP_PT_view_layer_override, view_layer=scene.view_layers[0]) == [
         "Material Override"
     ]
@@ -168,7 +171,12 @@ def test_error_of_the_last_render(scene, monkeypatch):
     report.publish(Outcome(stats={"seconds": {"total": 12.34}, "error": None}))
     assert draw(accuracy.RGP_PT_accuracy, **shown) == []
     report.publish(
-        Outcome(stats={"seconds": {"total": 12.34}, "error": {"rms_mean": 0.8123, "rms_peak": 0.1}})
+        Outcome(
+            stats={
+                "seconds": {"total": 12.34},
+                "error": {"rms_clipped": 0.8123, "rms_mean": 3.0, "rms_peak": 0.1},
+            }
+        )
     )
     assert draw(accuracy.RGP_PT_accuracy, **shown) == ["Last render: 0.81 % in 12.3 s"]
 

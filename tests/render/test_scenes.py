@@ -40,21 +40,26 @@ def contents(scene: bpy.types.Scene) -> dict[str, object]:
                         if s.type in ("RGBA", "VALUE") and s.name not in DIFFERENT_DEFAULTS
                     ]
         elif thing.type == "LIGHT":
-            figures += [
-                thing.data.energy,
-                *thing.data.color,
-                thing.data.size,
-                thing.data.size_y,
-                thing.visible_camera,
-            ]
+            lamp = thing.data
+            is_area = lamp.type == "AREA"
+            shape = (lamp.size, lamp.size_y) if is_area else (lamp.spot_size, lamp.shadow_soft_size)
+            figures += [lamp.energy, *lamp.color, *shape, thing.visible_camera]
         else:
-            figures.append(round(thing.data.angle, 5))
+            figures += [round(thing.data.angle, 5), round(thing.data.shift_y, 5)]
         described[thing.name] = figures
     return described
 
 
 @pytest.mark.parametrize(
-    ("name", "triangles"), [("cornell_box", 30), ("glossy_cornell", 30), ("two_rooms", 16), ("furnace", 22)]
+    ("name", "triangles"),
+    [
+        ("cornell_box", 30),
+        ("glossy_cornell", 30),
+        ("two_rooms", 16),
+        ("furnace", 22),
+        ("table", 58_624),
+        ("nave", 139_332),
+    ],
 )
 def test_scene_opens_with_clean_settings(name: str, triangles: int) -> None:
     scene = open_scene(name)

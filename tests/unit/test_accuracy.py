@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from rgp_engine.accuracy.error import Reference, measured_error
+from rgp_engine.accuracy.error import Means, Reference, measured_error
 from rgp_engine.accuracy.figure import PNG, SVG, write_figure
 from rgp_engine.accuracy.front import Row, cheapest, pareto_front
 from rgp_engine.accuracy.model import Costs, Model, nonnegative_fit
@@ -20,7 +20,8 @@ BASE = Quality(finest=128, bins="8x16", photons=1_000_000, rays=256, samples=16)
 
 
 def row(seconds, error, *, is_limit=False, **changed):
-    return Row(Quality(**{**vars(BASE), **changed}), seconds, error, is_limit, 3 << 20)
+    quality = Quality(**{**vars(BASE), **changed})
+    return Row(quality, seconds, error, is_limit, rms_mean=2.0 * error, bytes=3 << 20)
 
 
 def test_front():
@@ -48,9 +49,13 @@ def noisy(truth, sigma, seed):
 def test_error_without_noise_is_that_of_compare():
     random = np.random.default_rng(5)
     truth, picture = (random.random((40, 50, 3)).astype(np.float32) for _ in range(2))
-    reference = Reference(truth, truth, float(truth.mean(dtype=np.float64)))
+    truth[3, 4] = 20.0
+    reference = Reference(truth, truth, Means.of(truth))
     found = measured_error(picture, reference)
-    assert found.percent == pytest.approx(compare_pictures(picture, truth).rms_mean, rel=1e-6)
+    expected = compare_pictures(picture, truth)
+    assert found.percent == pytest.approx(expected.rms_clipped, rel=1e-6)
+    assert found.rms_mean == pytest.approx(expected.rms_mean, rel=1e-6)
+    assert found.percent < 0.9 * found.rms_mean
     assert not found.is_limit
     assert reference.noise == 0.0
 
@@ -58,7 +63,7 @@ def test_error_without_noise_is_that_of_compare():
 def test_noise_of_the_reference_is_no_error():
     """An error of 10 % against halves with 20 % noise each, whose mean has 14.1 %: the raw difference is 17.3 %."""
     truth = np.full((200, 200, 3), 2.0)
-    reference = Reference(noisy(truth, 0.4, 1), noisy(truth, 0.4, 2), 2.0)
+    reference = Reference(noisy(truth, 0.4, 1), noisy(truth, 0.4, 2), Means(2.0, 2.0))
     assert reference.noise == pytest.approx(20.0 / np.sqrt(2.0), rel=0.01)
     picture = noisy(truth, 0.2, 3)
     raw = compare_pictures(picture, (reference.first + reference.second) / 2.0).rms_mean
@@ -70,7 +75,7 @@ def test_noise_of_the_reference_is_no_error():
 
 def test_no_error_is_told_below_what_the_reference_resolves():
     truth = np.full((64, 64, 3), 1.0)
-    reference = Reference(noisy(truth, 0.2, 1), noisy(truth, 0.2, 2), 1.0)
+    reference = Reference(noisy(truth, 0.2, 1), noisy(truth, 0.2, 2), Means(1.0, 1.0))
     # 64 blocks of 20 % noise: its square spreads by 0.04 / 8, twice that is the square of 10 %.
     assert reference.resolves == pytest.approx(10.0, rel=0.05)
     found = measured_error(truth.astype(np.float32), reference)
@@ -80,13 +85,13 @@ def test_no_error_is_told_below_what_the_reference_resolves():
 
 def test_pictures_that_are_no_multiple_of_blocks():
     truth = np.full((13, 9, 3), 1.0, np.float32)
-    reference = Reference(truth, truth, 1.0)
+    reference = Reference(truth, truth, Means(1.0, 1.0))
     assert measured_error(truth + np.float32(0.1), reference).percent == pytest.approx(10.0, rel=1e-5)
 
 
 def test_window_has_the_error_of_the_whole():
     """Noise on the right half alone: a window of half the width must show as much of both."""
-    first, second = np.ones((32, 64, 3), np.float32), np.ones((32, 64, 3), np.float32)
+    first, second = np.ones((32, 64, 3)), np.ones((32, 64, 3))
     first[:, 32:] += 1.0
     found = representative_window(first, second, (32, 32))
     assert found == Window(16, 0, 32, 32)
@@ -101,7 +106,7 @@ def synthetic(qualities):
         cost = Costs(q.photons * 1e-6, q.rays * 1e-3 + q.samples * 2e-3, 0.25)
         costs.append(cost)
         whole = cost.photon_pass + 16 * cost.gather + cost.rest
-        rows.append(Row(q, whole, square**0.5, is_limit=False, bytes=0))
+        rows.append(Row(q, whole, square**0.5, is_limit=False, rms_mean=0.0, bytes=0))
     return rows, costs
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from rgp_engine.report import Problem, ProblemLog
-from rgp_engine.stats import clock, complete, effect_rows, rows
+from rgp_engine.stats import clock, complete, effect_rows, outlook, rows
 
 CORE = {
     "seconds": {"accel": 1.0, "total": 3.0},
@@ -71,3 +71,22 @@ def test_the_same_problem_is_kept_once_and_counted():
     log.add("Cube", "is bent", 3)
     log.add_records([{"subject": "Lamp", "message": "is odd", "count": 5}])
     assert log.problems == [Problem("Cube", "is bent", 4), Problem("Lamp", "is odd", 7)]
+
+
+@pytest.mark.parametrize(
+    ("target", "seconds_to_target", "text"),
+    [
+        (0.0, None, "0.8 % after 12 s; about 0.3 % at the end"),
+        (0.4, 48.2, "0.8 % after 12 s; 0.4 % in about 48 s"),
+        (0.4, 3725.0, "0.8 % after 12 s; 0.4 % in about 1:02:05"),
+        (0.1, None, "0.8 % after 12 s; 0.1 % not with these rays and photons"),
+    ],
+)
+def test_outlook(target: float, seconds_to_target: float | None, text: str):
+    progress = {
+        "error": 0.8,
+        "error_at_end": 0.3,
+        "seconds_elapsed": 12.1,
+        "seconds_to_target": seconds_to_target,
+    }
+    assert outlook(progress, target) == text

@@ -106,6 +106,9 @@ impl Session {
         dict.set_item("passes_total", now.passes_total)?;
         dict.set_item("seconds_elapsed", now.elapsed.as_secs_f64())?;
         dict.set_item("seconds_left", now.left.map(|left| left.as_secs_f64()))?;
+        dict.set_item("error", now.outlook.map(|outlook| outlook.error))?;
+        dict.set_item("error_at_end", now.outlook.map(|outlook| outlook.error_at_end))?;
+        dict.set_item("seconds_to_target", now.outlook.and_then(|outlook| outlook.seconds_to_target))?;
         dict.set_item("memory_bytes", memory_stats::memory_stats().map_or(0, |memory| memory.physical_mem))?;
         Ok(dict)
     }
@@ -115,8 +118,9 @@ impl Session {
         let (pixels, channels) = match layer {
             "combined" => (py.detach(|| film.combined()), 4),
             "indirect" => (py.detach(|| film.indirect()), 3),
+            "error" => (py.detach(|| film.error()), 1),
             other => {
-                let message = format!("there is no layer '{other}'; there are combined and indirect");
+                let message = format!("there is no layer '{other}'; there are combined, indirect and error");
                 return Err(PyValueError::new_err(message));
             }
         };

@@ -83,7 +83,7 @@ impl Room {
 fn deposit(accumulator: &Accumulator<'_>, landings: &[Landing]) {
     let flux = Rgb::splat(1.0 / PHOTONS as f32);
     for landing in landings {
-        black_box(accumulator.deposit(landing.p, landing.normal, flux));
+        black_box(accumulator.deposit(0, landing.p, landing.normal, flux));
     }
 }
 
@@ -124,7 +124,7 @@ fn pyramid_lookup(criterion: &mut Criterion, pyramid: &Pyramid, landings: &[Land
         group.bench_function(format!("level_{level}"), |bencher| {
             bencher.iter(|| {
                 for landing in &landings[..LOOKUPS] {
-                    black_box(pyramid.irradiance(landing.p, pyramid.class(landing.normal), level));
+                    black_box(pyramid.view(0).irradiance(landing.p, pyramid.class(landing.normal), level));
                 }
             });
         });

@@ -35,6 +35,17 @@ impl Stage {
     }
 }
 
+/// How good the picture is, and where it leads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outlook {
+    /// Standard error so far, in percent of the picture's mean.
+    pub error: f64,
+    /// The same, expected after all passes.
+    pub error_at_end: f64,
+    /// Until the target of the error is reached; `None` where there is none or it will not be.
+    pub seconds_to_target: Option<f64>,
+}
+
 /// A moment's view of a render.
 #[derive(Clone, Copy, Debug)]
 pub struct Snapshot {
@@ -50,6 +61,8 @@ pub struct Snapshot {
     pub elapsed: Duration,
     /// Estimated from the gather's pace; `None` before it has one.
     pub left: Option<Duration>,
+    /// `None` before the first passes are complete.
+    pub outlook: Option<Outlook>,
 }
 
 #[derive(Debug)]
@@ -59,6 +72,7 @@ struct State {
     passes_done: u32,
     passes_total: u32,
     stage_began: Instant,
+    outlook: Option<Outlook>,
 }
 
 /// Shared by the thread that renders and the one that watches.
@@ -72,8 +86,14 @@ pub struct Progress {
 impl Default for Progress {
     fn default() -> Self {
         let now = Instant::now();
-        let state =
-            State { stage: Stage::Accel, fraction: 0.0, passes_done: 0, passes_total: 0, stage_began: now };
+        let state = State {
+            stage: Stage::Accel,
+            fraction: 0.0,
+            passes_done: 0,
+            passes_total: 0,
+            stage_began: now,
+            outlook: None,
+        };
         Self { cancelled: AtomicBool::new(false), began: now, state: Mutex::new(state) }
     }
 }
@@ -118,6 +138,17 @@ impl Progress {
         state.passes_total = total;
     }
 
+    /// How good the picture is.
+    pub fn set_outlook(&self, outlook: Option<Outlook>) {
+        self.lock().outlook = outlook;
+    }
+
+    /// Since the render began.
+    #[must_use]
+    pub fn elapsed(&self) -> Duration {
+        self.began.elapsed()
+    }
+
     /// A moment's view.
     #[must_use]
     pub fn snapshot(&self) -> Snapshot {
@@ -131,6 +162,7 @@ impl Progress {
             passes_total: state.passes_total,
             elapsed: self.began.elapsed(),
             left,
+            outlook: state.outlook,
         }
     }
 

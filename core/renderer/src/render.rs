@@ -10,12 +10,14 @@ use crate::bsdf::{LobeSet, MaterialTable, PreparedMaterial};
 use crate::effects_plan::EffectsPlan;
 use crate::error::RenderError;
 use crate::film::Film;
-use crate::gather::{self, Gatherer, TraceFloor};
+use crate::gather::{self, Gatherer, Stop, TraceFloor};
 use crate::light::Lights;
 use crate::lit_scene::LitScene;
 use crate::photon_pass;
 use crate::progress::{Progress, Stage};
-use crate::pyramid::{Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, SurfaceTriangle};
+use crate::pyramid::{
+    Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, SETS, SurfaceTriangle,
+};
 use crate::scene::Scene;
 use crate::settings::{RenderSettings, parse_bins};
 use crate::stats::Stats;
@@ -59,7 +61,7 @@ pub fn trace_floor(
         let dark = Accumulator::new(&layout, 0.0, None);
         let pyramid = Pyramid::build(dark, &layout, settings.pyramid.photons_per_cell, |_, _| true, || true)
             .ok_or(RenderError::Cancelled)?;
-        Ok(gather::trace_floor(&Gatherer::new(&lit, &pyramid, settings), &film))
+        Ok(gather::trace_floor(&Gatherer::new(&lit, pyramid.view(0), settings), &film))
     })
 }
 
@@ -94,9 +96,11 @@ fn passes(
     let clock = Instant::now();
     let [elevation, azimuth] = parse_bins(&settings.pyramid.bins)?;
     let bins = lit.plan.direction_bins.then_some(DirectionBins { elevation, azimuth });
+    // A single pass has nothing to be compared with and reads all photons.
+    let sets = SETS.min(settings.gather.camera_samples as usize);
     let accumulator = Accumulator::new(&layout, lit.lights.total_flux().max_channel(), bins);
     let photons =
-        photon_pass::run(&lit, &settings.photon_pass, settings.render.seed, &accumulator, progress)?;
+        photon_pass::run(&lit, &settings.photon_pass, settings.render.seed, sets, &accumulator, progress)?;
     stats.photons.emitted = photons.emitted;
     stats.photons.deposited = accumulator.deposited();
     stats.rays.photon = photons.segments;
@@ -120,11 +124,15 @@ fn passes(
 
     progress.enter(Stage::Gather);
     let clock = Instant::now();
-    let gatherer = Gatherer::new(&lit, &pyramid, settings);
-    let gathered = gather::run(&gatherer, film, progress);
+    let gatherers = std::array::from_fn(|set| Gatherer::new(&lit, pyramid.view(set), settings));
+    let stop = Stop::new(&settings.gather, progress.elapsed());
+    let gathered = gather::run(&gatherers, film, stop, progress);
+    stats.error = film.picture_error();
     stats.seconds.gather = clock.elapsed().as_secs_f64();
     stats.effects = lit.plan.report(&stats.seconds);
-    stats.rays += gathered?;
+    let gathered = gathered?;
+    stats.rays += gathered.rays;
+    stats.stopped_by = gathered.stopped_by;
     Ok(())
 }
 

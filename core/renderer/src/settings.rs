@@ -48,6 +48,10 @@ pub struct GatherSettings {
     pub camera_samples: u32,
     /// Shadow rays per camera sample.
     pub light_samples: u32,
+    /// Seconds after which no pass is begun; 0 for none.
+    pub time_limit: f64,
+    /// Standard error of the picture, in percent of its mean, below which it is done; 0 for none.
+    pub error_target: f64,
     /// How gather rays are drawn.
     pub sampling: GatherSampling,
     /// Gather rays shorter than this many cells are continued one bounce.
@@ -122,6 +126,8 @@ impl Default for GatherSettings {
             rays: 256,
             camera_samples: 16,
             light_samples: 1,
+            time_limit: 0.0,
+            error_target: 0.0,
             sampling: GatherSampling::Cosine,
             retrace_distance: 1.732_050_8,
             max_depth: 32,
@@ -204,6 +210,8 @@ pub const KNOBS: &[Knob] = &[
     knob("gather", "rays", int(1, 4096), "rays", "Gather rays per pixel, shared among its camera samples; more make less noise"),
     knob("gather", "camera_samples", int(1, 1024), "samples", "Camera samples per pixel, for smooth edges and shadows"),
     knob("gather", "light_samples", int(1, 64), "rays", "Shadow rays per camera sample"),
+    knob("gather", "time_limit", Kind::Float { minimum: 0.0, maximum: 1e9 }, "s", "The render ends with the pass over the picture that fits into this time; at least two are made; 0 for no limit"),
+    knob("gather", "error_target", Kind::Float { minimum: 0.0, maximum: 100.0 }, "%", "The render ends when its noise falls below this share of the picture's mean; 0 to trace all rays"),
     knob("gather", "sampling", Kind::Enum { choices: &["cosine", "uniform"] }, "", "Gather rays follow the surface's reflection (cosine), or are uniform over the hemisphere as in the paper"),
     knob("gather", "retrace_distance", Kind::Float { minimum: 0.0, maximum: 8.0 }, "cells", "Gather rays shorter than this many cells are continued one bounce, which keeps corners right; 0 never"),
     knob("gather", "max_depth", int(1, 1000), "bounces", "Mirror, glass and short-ray bounces after which a path ends"),

@@ -87,6 +87,37 @@ pub struct EffectStats {
     pub seconds: f64,
 }
 
+/// Why there were no more passes over the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StoppedBy {
+    /// The user, or a failure.
+    #[default]
+    Cancel,
+    /// All gather rays are traced.
+    Rays,
+    /// The time is up.
+    Time,
+    /// The error is below its target.
+    Error,
+}
+
+/// Times the picture's mean: what is brighter is white on any screen, and counts as this bright in
+/// [`PictureError::rms_clipped`]. Else the edge of a lamp would outweigh the rest of the picture.
+pub const CLIPPED_AT: f32 = 8.0;
+
+/// Standard error of a picture, over all pixels and channels.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PictureError {
+    /// Root mean square of the picture clipped at [`CLIPPED_AT`], in percent of the clipped picture's mean: the one number
+    /// that is shown and aimed at.
+    pub rms_clipped: f64,
+    /// Root mean square, in percent of the picture's mean.
+    pub rms_mean: f64,
+    /// Root mean square, in percent of the brightest channel of all pixels.
+    pub rms_peak: f64,
+}
+
 /// Everything a render reports.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Stats {
@@ -104,4 +135,9 @@ pub struct Stats {
     pub nonfinite_pixels: u64,
     /// Passes over the picture that are complete.
     pub passes: u32,
+    /// Why there were no more.
+    pub stopped_by: StoppedBy,
+    /// Standard error of the combined picture: noise of gather rays, light samples and photons; `None` where there was no
+    /// second pass to compare with.
+    pub error: Option<PictureError>,
 }

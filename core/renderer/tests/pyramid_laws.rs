@@ -44,7 +44,7 @@ fn constant_field(layout: &Layout, turned: DQuat, irradiance: f64, n: u64, photo
     let flux = Rgb::splat((irradiance * SIDE * SIDE / (n * n) as f64) as f32);
     for i in 0..n * n {
         let p = (turned * position(i, n)).as_vec3();
-        assert!(accumulator.deposit(p, (turned * DVec3::Z).as_vec3(), flux).is_some(), "{p} has no cell");
+        assert!(accumulator.deposit(0, p, (turned * DVec3::Z).as_vec3(), flux).is_some(), "{p} has no cell");
     }
     Pyramid::build(accumulator, layout, photons_per_cell, |_, _| true, || true).expect("nobody cancels")
 }
@@ -56,7 +56,7 @@ fn flux_of_level(pyramid: &Pyramid, layout: &Layout, level: usize) -> f64 {
         let (cell, class) = key.cell(grid);
         let middle = (grid.lattice(cell).as_dvec3() + 0.5) * f64::from(grid.cell_size);
         let p = middle - layout.grid.offset_f64(DVec3::ZERO);
-        let irradiance = pyramid.irradiance(p.as_vec3(), class, level);
+        let irradiance = pyramid.view(0).irradiance(p.as_vec3(), class, level);
         f64::from(irradiance.0[0]) * surface.area as f64 * layout.area_unit
     });
     fluxes.sum()
@@ -78,7 +78,7 @@ fn flux_is_the_same_on_every_level() {
             let p = DVec3::new(random() * SIDE, random() * SIDE, 0.0);
             let flux = random().powi(8) as f32 / photons as f32;
             total += f64::from(flux);
-            accumulator.deposit(p.as_vec3(), Vec3::Z, Rgb::splat(flux));
+            accumulator.deposit(0, p.as_vec3(), Vec3::Z, Rgb::splat(flux));
         }
         assert_eq!((accumulator.deposited(), accumulator.lost()), (photons, 0));
         let pyramid = Pyramid::build(accumulator, &layout, 16, |_, _| true, || true).expect("nobody cancels");
@@ -98,9 +98,9 @@ fn a_constant_field_is_that_constant_at_every_level_and_place() {
         for level in 0..3 {
             for i in 0..101 * 101 {
                 let p = position(i, 101).as_vec3();
-                let found = pyramid.irradiance(p, pyramid.class(Vec3::Z), level).0[1];
+                let found = pyramid.view(0).irradiance(p, pyramid.class(Vec3::Z), level).0[1];
                 assert!((found / 5.0 - 1.0).abs() < 1e-5, "level {level}, {p}: {found}");
-                let behind = pyramid.irradiance(p, pyramid.class(Vec3::NEG_Z), level);
+                let behind = pyramid.view(0).irradiance(p, pyramid.class(Vec3::NEG_Z), level);
                 assert!(behind.is_black(), "light behind the square: {behind:?}");
             }
         }
@@ -120,7 +120,7 @@ fn a_constant_field_on_a_slanted_surface() {
         let (n, mut sum) = (101, 0.0);
         for i in 0..n * n {
             let p = (turned * position(i, n)).as_vec3();
-            let error = pyramid.irradiance(p, pyramid.class(normal), level).0[1] / 5.0 - 1.0;
+            let error = pyramid.view(0).irradiance(p, pyramid.class(normal), level).0[1] / 5.0 - 1.0;
             assert!(error.abs() < photons.sqrt().recip(), "level {level}, {p}: {error}");
             sum += f64::from(error);
         }
@@ -137,7 +137,7 @@ fn the_order_of_deposits_does_not_matter() {
     let build = |order: &mut dyn Iterator<Item = u64>| {
         let accumulator = Accumulator::new(&layout, 1e16, None);
         for i in order {
-            accumulator.deposit(position(i, n).as_vec3(), Vec3::Z, flux(i));
+            accumulator.deposit(0, position(i, n).as_vec3(), Vec3::Z, flux(i));
         }
         Pyramid::build(accumulator, &layout, 16, |_, _| true, || true).expect("nobody cancels")
     };
@@ -145,7 +145,8 @@ fn the_order_of_deposits_does_not_matter() {
     for level in 0..3 {
         for i in 0..n * n {
             let p = position(i, n).as_vec3();
-            let [a, b] = [&up, &down].map(|pyramid| pyramid.irradiance(p, pyramid.class(Vec3::Z), level));
+            let [a, b] =
+                [&up, &down].map(|pyramid| pyramid.view(0).irradiance(p, pyramid.class(Vec3::Z), level));
             assert_eq!(a, b, "level {level}, {p}");
         }
     }

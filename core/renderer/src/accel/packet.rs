@@ -51,7 +51,7 @@ impl Packet {
     }
 
     /// Sets every lane from arrays: origins and directions by axis. Lanes that are not `set` stay out.
-    #[inline]
+    #[inline(always)]
     pub fn set_all(
         &mut self,
         origins: &[[f32; LANES]; 3],
@@ -77,6 +77,7 @@ impl Packet {
 
     /// The ray of a lane.
     #[must_use]
+    #[inline(always)]
     pub fn ray(&self, lane: usize) -> Ray {
         let rays = &self.rays.ray;
         Ray {
@@ -88,7 +89,7 @@ impl Packet {
 
     /// What the lane's ray met.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn hit(&self, lane: usize) -> Option<Hit> {
         let hit = &self.rays.hit;
         (hit.geom_id[lane] != INVALID_ID).then(|| Hit {

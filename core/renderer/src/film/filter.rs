@@ -31,8 +31,16 @@ impl Filter {
         (self.radius + 0.5).ceil() as usize - 1
     }
 
+    /// Weights, along one axis, of a sample at `offset` from the centre of a pixel (pixels), for the pixels from `reach`
+    /// before to `reach` behind it.
+    pub(super) fn weigh(&self, offset: f32, weights: &mut [f32]) {
+        for (pixel, weight) in weights.iter_mut().enumerate() {
+            *weight = self.weight(offset + self.reach() as f32 - pixel as f32);
+        }
+    }
+
     /// Weight, along one axis, of a sample at distance `d` (pixels) from the pixel's centre.
-    pub(super) fn weight(&self, d: f32) -> f32 {
+    fn weight(&self, d: f32) -> f32 {
         // Half open, so that a box of one pixel is that pixel.
         if !(-self.radius..self.radius).contains(&d) {
             return 0.0;

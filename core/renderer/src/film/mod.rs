@@ -3,8 +3,13 @@
 //! One pass gives every pixel one sample at a random place inside it. When the pass is complete, each pixel adds the
 //! samples around it, weighted by the pixel filter: neighbours share their samples, which is worth as much as twice the
 //! rays. Passes are added in order, so that the sums do not depend on threads or tiles.
+//!
+//! Passes are kept in two halves that have nothing in common: how far the halves differ tells how far their mean is from
+//! the truth.
 
+mod error;
 mod filter;
+mod sums;
 
 use std::sync::{Mutex, MutexGuard, PoisonError, RwLock};
 
@@ -12,7 +17,9 @@ use rayon::prelude::*;
 
 use crate::color::Rgb;
 use crate::settings::FilmSettings;
+use crate::stats::PictureError;
 use filter::Filter;
+use sums::{CHANNELS, Sums};
 
 /// Pixels along an edge of the smallest unit of work; tiles are made of whole blocks, so that the picture does not
 /// depend on how it is cut.
@@ -33,6 +40,14 @@ pub struct PixelSample {
     pub taken: bool,
 }
 
+impl PixelSample {
+    /// Direct and indirect light, alpha, and 1 for the sample itself: what is summed.
+    fn channels(&self) -> [f32; CHANNELS] {
+        let ([a, b, c], [d, e, f]) = (self.direct.0, self.indirect.0);
+        [a, b, c, d, e, f, self.alpha, 1.0]
+    }
+}
+
 /// Pixels x, y (from the bottom left), width, height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TileRect {
@@ -46,18 +61,6 @@ pub struct TileRect {
     pub height: u32,
 }
 
-/// Weighted sums of one pixel.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    direct: [f64; 3],
-    indirect: [f64; 3],
-    alpha: f64,
-    /// Of the samples.
-    weight: f64,
-    /// Of the gather rays.
-    ray_weight: f64,
-}
-
 /// The film. Readable at any time: the mean of the complete passes, and before there is one, the samples taken so far.
 #[derive(Debug)]
 pub struct Film {
@@ -65,10 +68,23 @@ pub struct Film {
     height: usize,
     filter: Filter,
     tiles: Vec<TileRect>,
+    /// Edge of a tile (pixels).
+    edge: usize,
     /// Samples of the pass that is under way, by tile.
     pass: Vec<Mutex<Vec<PixelSample>>>,
-    sums: RwLock<Vec<Sums>>,
+    spread: Mutex<Spread>,
+    /// Of the passes of either half.
+    halves: RwLock<[Vec<Sums>; 2]>,
     nonfinite: Mutex<u64>,
+}
+
+/// The samples of a pass in the order of the picture's pixels, ready to be added to the pixels around them.
+#[derive(Debug, Default)]
+struct Spread {
+    channels: Vec<[f32; CHANNELS]>,
+    /// By sample: its weight along x, then along y, for the pixels from `reach` to the left (below) to `reach` to the
+    /// right (above). 0 for samples that were not taken.
+    weights: Vec<f32>,
 }
 
 impl Film {
@@ -83,13 +99,16 @@ impl Film {
             }
         }
         let (width, height) = (width as usize, height as usize);
+        let black = || vec![Sums::default(); width * height];
         Self {
             width,
             height,
             filter: Filter::new(settings.filter, settings.filter_width),
             pass: tiles.iter().map(|_| Mutex::default()).collect(),
             tiles,
-            sums: RwLock::new(vec![Sums::default(); width * height]),
+            edge: edge as usize,
+            spread: Mutex::default(),
+            halves: RwLock::new([black(), black()]),
             nonfinite: Mutex::new(0),
         }
     }
@@ -120,15 +139,15 @@ impl Film {
         *lock(&self.pass[tile]) = samples;
     }
 
-    /// Adds the samples of the pass, of `gather_rays` rays a pixel, to the picture. A pass that was cut short adds what it
-    /// has.
-    pub fn finish_pass(&self, gather_rays: u32) {
-        let samples = self.samples();
-        let reached = self.weights(&samples);
-        let mut sums = self.sums.write().unwrap_or_else(PoisonError::into_inner);
-        sums.par_chunks_mut(self.width.max(1)).enumerate().for_each(|(y, row)| {
-            for (x, sum) in row.iter_mut().enumerate() {
-                self.add_around(sum, &samples, &reached, [x, y], f64::from(gather_rays));
+    /// Adds the samples of the pass, of `gather_rays` rays a pixel, to one half of the picture (0 or 1). A pass that was
+    /// cut short adds what it has.
+    pub fn finish_pass(&self, gather_rays: u32, half: usize) {
+        let mut spread = lock(&self.spread);
+        self.prepare(&mut spread);
+        let mut halves = self.halves.write().unwrap_or_else(PoisonError::into_inner);
+        halves[half].par_chunks_mut(self.width.max(1)).enumerate().for_each(|(y, row)| {
+            for (x, sums) in row.iter_mut().enumerate() {
+                sums.add(&self.around(&spread, [x, y]), gather_rays as f32);
             }
         });
         self.pass.iter().for_each(|tile| lock(tile).clear());
@@ -144,102 +163,102 @@ impl Film {
     #[must_use]
     pub fn combined(&self) -> Vec<f32> {
         self.read(|s| {
-            let (per_sample, per_ray) = (inverse(s.weight), inverse(s.ray_weight));
-            let channel = |c: usize| to_f32(s.direct[c] * per_sample + s.indirect[c] * per_ray);
-            [channel(0), channel(1), channel(2), to_f32(s.alpha * per_sample)]
+            let [r, g, b] = s.combined().0;
+            [r, g, b, s.alpha()]
         })
     }
 
     /// Light that was scattered at least twice: red, green and blue of every pixel, rows from the bottom.
     #[must_use]
     pub fn indirect(&self) -> Vec<f32> {
-        self.read(|s| s.indirect.map(|c| to_f32(c * inverse(s.ray_weight))))
+        self.read(|s| s.indirect().0)
+    }
+
+    /// Standard error of the combined picture, one value per pixel (root mean square of the channels), rows from the
+    /// bottom; 0 where only one half knows the pixel.
+    #[must_use]
+    pub fn error(&self) -> Vec<f32> {
+        let halves = self.halves.read().unwrap_or_else(PoisonError::into_inner);
+        let [a, b] = &*halves;
+        a.par_iter().zip(b).map(|(a, b)| error::of_pixel(a, b).sqrt()).collect()
+    }
+
+    /// Standard error of the whole picture; `None` before both halves know it.
+    #[must_use]
+    pub fn picture_error(&self) -> Option<PictureError> {
+        let halves = self.halves.read().unwrap_or_else(PoisonError::into_inner);
+        let [a, b] = &*halves;
+        error::of_picture(a, b, self.width)
     }
 
     fn read<const N: usize>(&self, value: impl Fn(&Sums) -> [f32; N]) -> Vec<f32> {
-        let sums = self.sums.read().unwrap_or_else(PoisonError::into_inner);
-        let begun = sums.iter().any(|sum| sum.weight > 0.0);
-        if begun {
-            return sums.iter().flat_map(value).collect();
+        let halves = self.halves.read().unwrap_or_else(PoisonError::into_inner);
+        let [a, b] = &*halves;
+        if a.iter().any(Sums::is_known) {
+            return a.iter().zip(b).flat_map(|(a, b)| value(&a.with(b))).collect();
         }
-        drop(sums);
-        let first = |sample: &PixelSample| {
-            let mut sum = Sums::default();
-            if sample.taken {
-                sum.add(sample, 1.0, 1.0);
-            }
-            value(&sum)
-        };
-        self.samples().iter().flat_map(first).collect()
-    }
-
-    /// Samples of the pass that is under way, by pixel.
-    fn samples(&self) -> Vec<PixelSample> {
-        let mut samples = vec![PixelSample::default(); self.width * self.height];
+        drop(halves);
+        let mut pixels = vec![value(&Sums::default()); self.width * self.height];
         for (rect, tile) in self.tiles.iter().zip(&self.pass) {
-            for (row, pixels) in lock(tile).chunks(rect.width as usize).enumerate() {
-                let start = (rect.y as usize + row) * self.width + rect.x as usize;
-                samples[start..start + pixels.len()].copy_from_slice(pixels);
+            for (i, sample) in lock(tile).iter().enumerate().filter(|(_, sample)| sample.taken) {
+                let (x, y) = (i % rect.width as usize, i / rect.width as usize);
+                let mut sums = Sums::default();
+                sums.add(&sample.channels(), 1.0);
+                pixels[(rect.y as usize + y) * self.width + rect.x as usize + x] = value(&sums);
             }
         }
-        samples
+        pixels.into_iter().flatten().collect()
     }
 
-    /// Adds to a pixel the samples its filter reaches. `reached` holds, for each sample, its weight along x and along y for
-    /// the pixels `reach` to the left (below) up to `reach` to the right (above).
-    fn add_around(
-        &self,
-        sum: &mut Sums,
-        samples: &[PixelSample],
-        reached: &[f32],
-        [x, y]: [usize; 2],
-        rays: f64,
-    ) {
-        let reach = self.filter.reach();
-        let span = 2 * reach + 1;
+    /// Lays out the samples of the pass that is under way.
+    fn prepare(&self, spread: &mut Spread) {
+        let span = self.span();
+        spread.channels.clear();
+        spread.channels.resize(self.width * self.height, [0.0; CHANNELS]);
+        spread.weights.clear();
+        spread.weights.resize(self.width * self.height * 2 * span, 0.0);
+        let band = (self.edge * self.width).max(1);
+        let bands = spread.channels.par_chunks_mut(band).zip(spread.weights.par_chunks_mut(band * 2 * span));
+        let tiles_across = self.width.div_ceil(self.edge).max(1);
+        bands.zip(self.tiles.par_chunks(tiles_across)).zip(self.pass.par_chunks(tiles_across)).for_each(
+            |(((channels, weights), rects), tiles)| {
+                for (rect, tile) in rects.iter().zip(tiles) {
+                    for (i, sample) in lock(tile).iter().enumerate().filter(|(_, sample)| sample.taken) {
+                        let (x, y) = (i % rect.width as usize, i / rect.width as usize);
+                        let at = y * self.width + rect.x as usize + x;
+                        channels[at] = sample.channels();
+                        let (along_x, along_y) = weights[at * 2 * span..][..2 * span].split_at_mut(span);
+                        self.filter.weigh(sample.offset[0], along_x);
+                        self.filter.weigh(sample.offset[1], along_y);
+                    }
+                }
+            },
+        );
+    }
+
+    /// Pixels along which the filter spreads a sample.
+    fn span(&self) -> usize {
+        2 * self.filter.reach() + 1
+    }
+
+    /// Sum of the samples that the filter of a pixel reaches.
+    #[inline]
+    fn around(&self, spread: &Spread, [x, y]: [usize; 2]) -> [f32; CHANNELS] {
+        let (reach, span) = (self.filter.reach(), self.span());
+        let mut sum = [0.0; CHANNELS];
         for ny in y.saturating_sub(reach)..(y + reach + 1).min(self.height) {
             for nx in x.saturating_sub(reach)..(x + reach + 1).min(self.width) {
                 let index = ny * self.width + nx;
-                let along = &reached[index * 2 * span..][..2 * span];
-                let weight = along[x + reach - nx] * along[span + y + reach - ny];
-                if weight > 0.0 {
-                    sum.add(&samples[index], f64::from(weight), rays);
+                let weights = &spread.weights[index * 2 * span..][..2 * span];
+                let weight = weights[x + reach - nx] * weights[span + y + reach - ny];
+                let channels = &spread.channels[index];
+                for c in 0..CHANNELS {
+                    sum[c] += weight * channels[c];
                 }
             }
         }
+        sum
     }
-
-    /// See [`Film::add_around`]; samples that were not taken weigh nothing.
-    fn weights(&self, samples: &[PixelSample]) -> Vec<f32> {
-        let reach = self.filter.reach() as i32;
-        let along = |offset: f32, taken: bool| {
-            (-reach..=reach)
-                .map(move |pixel| if taken { self.filter.weight(offset - pixel as f32) } else { 0.0 })
-        };
-        let of = |s: &PixelSample| along(s.offset[0], s.taken).chain(along(s.offset[1], s.taken));
-        samples.par_iter().flat_map_iter(of).collect()
-    }
-}
-
-impl Sums {
-    fn add(&mut self, sample: &PixelSample, weight: f64, gather_rays: f64) {
-        for c in 0..3 {
-            self.direct[c] += weight * f64::from(sample.direct.0[c]);
-            self.indirect[c] += weight * f64::from(sample.indirect.0[c]);
-        }
-        self.alpha += weight * f64::from(sample.alpha);
-        self.weight += weight;
-        self.ray_weight += weight * gather_rays;
-    }
-}
-
-fn inverse(weight: f64) -> f64 {
-    if weight > 0.0 { 1.0 / weight } else { 0.0 }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "the picture is f32")]
-fn to_f32(value: f64) -> f32 {
-    value as f32
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -256,20 +275,20 @@ mod tests {
         Film::new(13, 9, &FilmSettings { filter, filter_width, tile_size: 5 })
     }
 
-    fn pass(film: &Film, rays: u32, value: impl Fn(u32, u32) -> PixelSample) {
+    fn pass(film: &Film, rays: u32, half: usize, mut value: impl FnMut(u32, u32) -> PixelSample) {
         for (index, rect) in film.tiles().iter().enumerate() {
             let pixels =
                 (0..rect.width * rect.height).map(|i| (rect.x + i % rect.width, rect.y + i / rect.width));
             film.take(index, pixels.map(|(x, y)| value(x, y)).collect());
         }
-        film.finish_pass(rays);
+        film.finish_pass(rays, half);
     }
 
     #[test]
     fn a_box_of_one_pixel_gives_means_over_passes() {
         let film = film(PixelFilter::Box, 1.0);
         for n in 0..3 {
-            pass(&film, 4, |x, y| {
+            pass(&film, 4, n as usize % 2, |x, y| {
                 let value = Rgb::splat((x + 100 * y + n) as f32);
                 PixelSample {
                     offset: [0.49, -0.5],
@@ -291,7 +310,7 @@ mod tests {
     fn any_filter_keeps_a_constant() {
         let film = film(PixelFilter::BlackmanHarris, 1.5);
         for n in 0..5_u32 {
-            pass(&film, 16, |x, y| {
+            pass(&film, 16, n as usize % 2, |x, y| {
                 let offset = [(x * 7 + n * 3) % 10, (y * 3 + n) % 10].map(|v| v as f32 / 10.0 - 0.5);
                 let (direct, indirect) = (Rgb::splat(2.0), Rgb::splat(16.0));
                 PixelSample { offset, direct, indirect, alpha: 1.0, taken: true }
@@ -303,7 +322,7 @@ mod tests {
     #[test]
     fn what_is_not_finite_is_left_out_and_counted() {
         let film = film(PixelFilter::BlackmanHarris, 1.5);
-        pass(&film, 1, |x, y| PixelSample {
+        pass(&film, 1, 0, |x, y| PixelSample {
             direct: Rgb::splat(if (x, y) == (3, 3) { f32::NAN } else { 4.0 }),
             taken: true,
             ..Default::default()
@@ -319,5 +338,38 @@ mod tests {
         film.take(0, vec![sample; 64]);
         let seen = film.combined().chunks(4).filter(|p| p[0] == 1.0).count();
         assert_eq!(seen, 64);
+    }
+
+    /// Two halves of known difference, and passes of known noise.
+    #[test]
+    fn the_error_is_that_of_the_mean() {
+        let film = film(PixelFilter::Box, 1.0);
+        let value = |light: f32| PixelSample {
+            direct: Rgb::splat(light),
+            alpha: 1.0,
+            taken: true,
+            ..Default::default()
+        };
+        pass(&film, 1, 0, |_, _| value(3.0));
+        assert_eq!(film.picture_error(), None);
+        pass(&film, 1, 1, |_, _| value(5.0));
+        // The mean is 4, each half lies 1 from it.
+        let error = film.picture_error().unwrap();
+        assert!((error.rms_mean - 25.0).abs() < 1e-5 && (error.rms_peak - 25.0).abs() < 1e-5, "{error:?}");
+        assert!(film.error().iter().all(|&e| (e - 1.0).abs() < 1e-6));
+        // Sixteen passes of uniform noise of width 2 about 4: 2 / sqrt(12) / sqrt(16), in percent of 4.
+        let film = Film::new(200, 200, &FilmSettings::default());
+        for n in 0..16_u64 {
+            let mut rng = crate::sampling::Rng::new(n);
+            pass(&film, 1, n as usize % 2, |_, _| {
+                let offset = [rng.draw() - 0.5, rng.draw() - 0.5];
+                PixelSample { offset, ..value(3.0 + 2.0 * rng.draw()) }
+            });
+        }
+        let picture = film.combined();
+        let squares: f64 = picture.chunks(4).map(|p| (f64::from(p[0]) - 4.0).powi(2)).sum();
+        let truth = (squares / 40_000.0).sqrt() / 4.0 * 100.0;
+        let error = film.picture_error().unwrap().rms_mean;
+        assert!((error / truth - 1.0).abs() < 0.05, "{error} against {truth}");
     }
 }

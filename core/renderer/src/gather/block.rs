@@ -10,7 +10,7 @@ use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::film::{BLOCK, PixelSample, TileRect};
 use crate::lit_scene::ray_kind;
-use crate::sampling::{Rng, hash};
+use crate::sampling::{PixelSeeds, Rng, hash};
 use crate::scene::visibility;
 use crate::settings::GatherSampling;
 use crate::stats::RayCounts;
@@ -25,33 +25,36 @@ use super::vertex::{GatherRay, Vertex, rotate};
 /// Work on one block of pixels.
 pub(super) struct Block<'a, 'g> {
     gatherer: &'g Gatherer<'a>,
-    /// Number of the camera sample, which is the number of the pass.
-    pass: u32,
+    /// Number of the camera sample.
+    sample: u32,
     keys: [u64; LANES],
-    seeds: [u32; LANES],
+    seeds: PixelSeeds<LANES>,
     /// Camera samples on constant Lambert surfaces, and on all others.
     lambert: LambertLanes,
     vertices: [Option<Box<Vertex<'a>>>; LANES],
+    /// Whether there are such others.
+    has_vertices: bool,
     samples: [PixelSample; LANES],
     packet: Packet,
+    /// Of the packet: gather rays that did not start on a constant Lambert surface.
+    others: [Option<GatherRay>; LANES],
     rays: RayCounts,
 }
 
-/// Gather rays that did not start on a constant Lambert surface.
-type OtherRays = [Option<GatherRay>; LANES];
-
 impl<'a, 'g> Block<'a, 'g> {
     /// An idle block.
-    pub(super) fn new(gatherer: &'g Gatherer<'a>, pass: u32) -> Self {
+    pub(super) fn new(gatherer: &'g Gatherer<'a>, sample: u32) -> Self {
         Self {
             gatherer,
-            pass,
+            sample,
             keys: [0; LANES],
-            seeds: [0; LANES],
+            seeds: PixelSeeds::new(&[0; LANES]),
             lambert: LambertLanes::default(),
             vertices: [const { None }; LANES],
+            has_vertices: false,
             samples: [PixelSample::default(); LANES],
             packet: Packet::default(),
+            others: [None; LANES],
             rays: RayCounts::default(),
         }
     }
@@ -62,9 +65,10 @@ impl<'a, 'g> Block<'a, 'g> {
     }
 
     /// Computes the pixels of the block whose lowest corner is (x, y) and writes those inside `tile` to `out`.
+    #[inline(always)]
     pub(super) fn run(&mut self, x: u32, y: u32, tile: TileRect, out: &mut [PixelSample]) {
         self.start(x, y);
-        if self.lambert.any() || self.vertices.iter().any(Option::is_some) {
+        if self.lambert.any() || self.has_vertices {
             self.light();
             self.gather();
         }
@@ -82,18 +86,21 @@ impl<'a, 'g> Block<'a, 'g> {
         let camera = &g.lit.accel.scene().camera;
         self.packet.clear();
         self.lambert.clear();
-        for lane in 0..LANES {
+        self.has_vertices = false;
+        self.others = [None; LANES];
+        let mut seeds = [0; LANES];
+        for (lane, seed) in seeds.iter_mut().enumerate() {
             let (px, py) = (x + lane as u32 % BLOCK, y + lane as u32 / BLOCK);
             let (frame_x, frame_y) = (camera.region[0] + px, camera.region[1] + py);
             let key = hash(u64::from(g.seed), u64::from(frame_y) << 32 | u64::from(frame_x));
             self.keys[lane] = key;
-            self.seeds[lane] = (key >> 32) as u32;
+            *seed = (key >> 32) as u32;
             self.samples[lane] = PixelSample::default();
             self.vertices[lane] = None;
             if px >= camera.region[2] || py >= camera.region[3] {
                 continue;
             }
-            let u = g.camera_set.point(self.pass as usize, key as u32);
+            let u = g.camera_set.point(self.sample as usize, key as u32);
             let offset = [u[0] - 0.5, u[1] - 0.5];
             self.samples[lane] = PixelSample { offset, taken: true, ..Default::default() };
             let offset = DVec2::new(f64::from(offset[0]), f64::from(offset[1]));
@@ -101,6 +108,7 @@ impl<'a, 'g> Block<'a, 'g> {
             let (ray, far) = camera_ray(camera, g.lit, position);
             self.packet.set(lane, &ray, far);
         }
+        self.seeds = PixelSeeds::new(&seeds);
         g.lit.accel.intersect_packet(&mut self.packet);
         for lane in 0..LANES {
             if self.packet.is_set(lane) {
@@ -130,7 +138,7 @@ impl<'a, 'g> Block<'a, 'g> {
 
     fn follow_camera(&mut self, lane: usize, mut ray: Ray, hit: Option<Hit>) {
         let g = self.gatherer;
-        let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.pass) << 16 | 1));
+        let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.sample) << 16 | 1));
         let mut sampled = Sampled { pdf: None, shares: Shares::EVEN, kind: visibility::CAMERA };
         let (mut first, mut throughput) = (Some(hit), Rgb::WHITE);
         let transparent_film = g.lit.accel.scene().world.film_transparent;
@@ -145,6 +153,7 @@ impl<'a, 'g> Block<'a, 'g> {
             throughput *= met.through;
             if surface.bsdf.has(LobeSet::NON_DELTA) {
                 self.vertices[lane] = Some(Box::new(Vertex { surface, throughput }));
+                self.has_vertices = true;
                 return;
             }
             let sample =
@@ -158,13 +167,14 @@ impl<'a, 'g> Block<'a, 'g> {
     }
 
     /// Direct light: shadow rays of the camera sample.
+    #[inline(always)]
     fn light(&mut self) {
         let g = self.gatherer;
         if !g.lit.plan.direct {
             return;
         }
         for i in 0..g.light_samples {
-            let index = self.pass * g.light_samples + i;
+            let index = self.sample * g.light_samples + i;
             let [x, y] = g.light_set.points(index as usize, &self.seeds);
             self.packet.clear();
             let mut shadows: [Option<ShadowRay>; LANES] = [None; LANES];
@@ -208,40 +218,50 @@ impl<'a, 'g> Block<'a, 'g> {
     }
 
     /// Gather rays of the camera sample.
+    #[inline(always)]
     fn gather(&mut self) {
-        for index in self.gatherer.rays_of_pass(self.pass) {
-            let (pdfs, others) = self.aim(index);
+        for index in self.gatherer.rays_of_sample(self.sample) {
+            let pdfs = self.aim(index);
             self.gatherer.lit.accel.intersect_packet(&mut self.packet);
-            self.receive(&pdfs, &others, index);
+            self.receive(&pdfs, index);
         }
     }
 
     /// Puts gather ray `index` of every lane into the packet; gives the densities of those that start on constant Lambert
-    /// surfaces, and all about the others.
-    fn aim(&mut self, index: u32) -> ([f32; LANES], OtherRays) {
+    /// surfaces.
+    #[inline(always)]
+    fn aim(&mut self, index: u32) -> [f32; LANES] {
         let g = self.gatherer;
         let points = g.gather_set.points(index as usize, &self.seeds);
         let lamps = g.lit.accel.lamp_bit();
         let pdfs = self.lambert.aim(points, visibility::DIFFUSE | lamps, &mut self.packet);
-        let mut others: OtherRays = [None; LANES];
+        if self.has_vertices {
+            self.aim_others(points, index);
+        }
+        pdfs
+    }
+
+    fn aim_others(&mut self, points: [[f32; LANES]; 2], index: u32) {
+        let g = self.gatherer;
+        let lamps = g.lit.accel.lamp_bit();
         for lane in 0..LANES {
+            self.others[lane] = None;
             let Some(vertex) = &self.vertices[lane] else { continue };
-            let u = [points[0][lane], points[1][lane]];
+            let u = points.map(|coordinate| coordinate[lane]);
             let Some((ray, direction)) = vertex.gather_ray(u, rotate(self.keys[lane], index), g.sampling)
             else {
                 continue;
             };
             let leaving = Ray::leaving(vertex.surface.p, vertex.surface.ng, direction, ray.kind | lamps);
             self.packet.set(lane, &leaving, f32::INFINITY);
-            others[lane] = Some(ray);
+            self.others[lane] = Some(ray);
         }
-        (pdfs, others)
     }
 
     /// The gather rays that `run` would trace, pixel by pixel within each stratum.
     pub(super) fn collect_gather_rays(&mut self, x: u32, y: u32, rays: &mut Vec<Ray>) {
         self.start(x, y);
-        for index in self.gatherer.rays_of_pass(self.pass) {
+        for index in self.gatherer.rays_of_sample(self.sample) {
             self.aim(index);
             rays.extend(
                 (0..LANES).filter(|&lane| self.packet.is_set(lane)).map(|lane| self.packet.ray(lane)),
@@ -251,7 +271,8 @@ impl<'a, 'g> Block<'a, 'g> {
 
     /// Adds what the gather rays of a packet bring: those that end on constant Lambert surfaces are read from the pyramid
     /// together, the others followed one by one.
-    fn receive(&mut self, pdfs: &[f32; LANES], others: &OtherRays, index: u32) {
+    #[inline(always)]
+    fn receive(&mut self, pdfs: &[f32; LANES], index: u32) {
         let g = self.gatherer;
         let (mut p, mut class, mut level) = ([Vec3::ZERO; LANES], [0; LANES], [0; LANES]);
         let mut weight = [Rgb::BLACK; LANES];
@@ -261,13 +282,13 @@ impl<'a, 'g> Block<'a, 'g> {
                 continue;
             }
             self.rays.gather += 1;
-            let ray = others[lane]
+            let ray = self.others[lane]
                 .unwrap_or_else(|| GatherRay::diffuse(self.lambert.weight[lane], Some(pdfs[lane])));
             let hit = self.packet.hit(lane);
             let solid_angle = ray.pdf.map_or(0.0, |pdf| (g.per_ray / pdf).min(g.widest));
             match hit.filter(|_| !ray.sharp).and_then(|hit| g.readable(&hit, solid_angle)) {
                 Some(readable) => {
-                    (p[lane], class[lane]) = readable.place(&self.packet.ray(lane), g.pyramid);
+                    (p[lane], class[lane]) = readable.place(&self.packet.ray(lane), &g.pyramid);
                     level[lane] = readable.level;
                     weight[lane] = ray.weight * readable.albedo_over_pi;
                     read[lane] = true;

@@ -24,10 +24,10 @@ pub struct TraceFloor {
 #[must_use]
 pub fn trace_floor(gatherer: &Gatherer<'_>, film: &Film) -> TraceFloor {
     let busy = Mutex::new((0_u64, Duration::ZERO));
-    for pass in 0..gatherer.camera_samples {
+    for sample in 0..gatherer.camera_samples {
         film.tiles().par_iter().for_each(|tile| {
             let mut rays: Vec<Ray> = Vec::new();
-            let mut block = Block::new(gatherer, pass);
+            let mut block = Block::new(gatherer, sample);
             for y in (tile.y..tile.y + tile.height).step_by(BLOCK as usize) {
                 for x in (tile.x..tile.x + tile.width).step_by(BLOCK as usize) {
                     block.collect_gather_rays(x, y, &mut rays);

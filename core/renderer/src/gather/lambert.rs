@@ -70,6 +70,7 @@ impl LambertLanes {
     }
 
     /// Aims one gather ray per lane at the points (x, y) of the unit square; gives the densities per solid angle.
+    #[inline(always)]
     pub(super) fn aim(&self, [x, y]: [Lanes; 2], mask: u32, packet: &mut Packet) -> Lanes {
         let mut local = [[0.0; LANES]; 3];
         for lane in 0..LANES {

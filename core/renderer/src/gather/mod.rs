@@ -5,14 +5,17 @@
 //! `1/N Σ f(x) cos / p · L(y)`, where L(y) is read from the pyramid over the footprint Ω r² with Ω = 1 / (N p).
 //!
 //! One pass over the picture is one camera sample of every pixel; passes are independent and their mean is the picture.
+//! Even and odd passes read different photons: how much they differ says how far the picture is from its limit.
 
 mod block;
 mod camera;
+mod convergence;
 mod direct;
 mod floor;
 mod lambert;
 mod path;
 mod readable;
+mod stop;
 mod vertex;
 
 use std::ops::Range;
@@ -29,21 +32,23 @@ use crate::error::RenderError;
 use crate::film::{BLOCK, Film, PixelSample};
 use crate::lit_scene::{LitScene, Surface, ray_kind};
 use crate::progress::Progress;
-use crate::pyramid::Pyramid;
+use crate::pyramid::{SETS, View};
 use crate::sampling::{Rng, StratifiedSet, hash};
 use crate::scene::visibility;
 use crate::settings::{GatherSampling, RenderSettings};
-use crate::stats::RayCounts;
+use crate::stats::{RayCounts, StoppedBy};
 
 use block::{Block, widest_stratum};
 use camera::camera_ray;
+use convergence::Convergence;
 use direct::Shares;
 pub use floor::{TraceFloor, trace_floor};
+pub use stop::Stop;
 
 /// What every gather ray needs to know.
 pub struct Gatherer<'a> {
     lit: &'a LitScene<'a>,
-    pyramid: &'a Pyramid,
+    pyramid: View<'a>,
     seed: u32,
     camera_samples: u32,
     light_samples: u32,
@@ -69,9 +74,9 @@ pub struct Gatherer<'a> {
 }
 
 impl<'a> Gatherer<'a> {
-    /// Prepares a gather over a finished pyramid.
+    /// Prepares a gather over a finished pyramid, as one set of photons filled it.
     #[must_use]
-    pub fn new(lit: &'a LitScene<'a>, pyramid: &'a Pyramid, settings: &RenderSettings) -> Self {
+    pub fn new(lit: &'a LitScene<'a>, pyramid: View<'a>, settings: &RenderSettings) -> Self {
         let gather = &settings.gather;
         let seed = settings.render.seed;
         let set = |count: u32, salt: u64| StratifiedSet::new(count, hash(u64::from(seed), salt) as u32);
@@ -104,56 +109,107 @@ impl<'a> Gatherer<'a> {
         }
     }
 
+    /// The camera sample of a pass. Even passes go through the first half of the set and odd ones through the second, so
+    /// that each half of the film has a well-spread set of its own, after any number of passes.
+    const fn sample_of_pass(&self, pass: u32) -> u32 {
+        let half = pass % SETS as u32;
+        half * self.camera_samples.div_ceil(SETS as u32) + pass / SETS as u32
+    }
+
     /// Gather rays that belong to a camera sample: as even a share as can be.
-    fn rays_of_pass(&self, pass: u32) -> Range<u32> {
+    fn rays_of_sample(&self, sample: u32) -> Range<u32> {
         let first =
-            |pass: u32| (u64::from(pass) * u64::from(self.rays) / u64::from(self.camera_samples)) as u32;
-        first(pass)..first(pass + 1)
+            |sample: u32| (u64::from(sample) * u64::from(self.rays) / u64::from(self.camera_samples)) as u32;
+        first(sample)..first(sample + 1)
     }
 }
 
-/// Renders all passes into `film`.
+/// What a gather did.
+#[derive(Clone, Copy, Debug)]
+pub struct Gathered {
+    /// Rays traced.
+    pub rays: RayCounts,
+    /// Why there were no more passes.
+    pub stopped_by: StoppedBy,
+}
+
+/// Renders passes into `film` until `stop` is content. The passes read the sets of photons by turns, and fill the film's
+/// halves by turns.
 ///
 /// # Errors
 /// [`RenderError::Cancelled`]; what is finished is in the film.
-pub fn run(gatherer: &Gatherer<'_>, film: &Film, progress: &Progress) -> Result<RayCounts, RenderError> {
-    let passes = gatherer.camera_samples;
+pub fn run(
+    gatherers: &[Gatherer<'_>; SETS],
+    film: &Film,
+    stop: Stop,
+    progress: &Progress,
+) -> Result<Gathered, RenderError> {
+    let passes = gatherers[0].camera_samples;
     let (rays, done) = (Mutex::new(RayCounts::default()), AtomicUsize::new(0));
     let tiles = film.tiles().len();
+    let instructions = pulp::Arch::new();
+    let mut convergence = Convergence::new(progress.elapsed());
+    let mut stopped_by = StoppedBy::Rays;
     for pass in 0..passes {
         progress.set_passes(pass, passes);
+        let half = pass as usize % SETS;
+        let gatherer = &gatherers[half];
+        let sample = gatherer.sample_of_pass(pass);
         let finished = (0..tiles).into_par_iter().try_for_each(|index| {
-            let counts = run_tile(gatherer, pass, film, index, progress)?;
+            let counts = instructions.dispatch(TileWork { gatherer, sample, film, index, progress })?;
             *rays.lock().unwrap_or_else(PoisonError::into_inner) += counts;
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            progress.set_fraction(done as f64 / (tiles * passes as usize) as f64);
+            let share = done as f64 / (tiles * passes as usize) as f64;
+            progress.set_fraction(stop.fraction(share, progress.elapsed()));
             Ok::<(), RenderError>(())
         });
-        film.finish_pass(gatherer.rays_of_pass(pass).len() as u32);
+        film.finish_pass(gatherer.rays_of_sample(sample).len() as u32, half);
         finished?;
+        if half + 1 == SETS {
+            convergence.add(pass + 1, progress.elapsed(), film.picture_error());
+            progress.set_outlook(convergence.outlook(passes, &stop));
+        }
+        if let Some(reason) =
+            stop.reason(&convergence, pass + 1, progress.elapsed()).filter(|_| pass + 1 < passes)
+        {
+            stopped_by = reason;
+            progress.set_passes(pass + 1, pass + 1);
+            break;
+        }
+        progress.set_passes(pass + 1, passes);
     }
-    progress.set_passes(passes, passes);
-    Ok(rays.into_inner().unwrap_or_else(PoisonError::into_inner))
+    progress.set_fraction(1.0);
+    Ok(Gathered { rays: rays.into_inner().unwrap_or_else(PoisonError::into_inner), stopped_by })
 }
 
-fn run_tile(
-    gatherer: &Gatherer<'_>,
-    pass: u32,
-    film: &Film,
+/// A tile of a pass, for whichever vector instructions this processor has.
+struct TileWork<'w, 'a> {
+    gatherer: &'w Gatherer<'a>,
+    /// Number of the camera sample.
+    sample: u32,
+    film: &'w Film,
     index: usize,
-    progress: &Progress,
-) -> Result<RayCounts, RenderError> {
-    let tile = film.tiles()[index];
-    let mut samples = vec![PixelSample::default(); (tile.width * tile.height) as usize];
-    let mut block = Block::new(gatherer, pass);
-    for y in (tile.y..tile.y + tile.height).step_by(BLOCK as usize) {
-        progress.check()?;
-        for x in (tile.x..tile.x + tile.width).step_by(BLOCK as usize) {
-            block.run(x, y, tile, &mut samples);
+    progress: &'w Progress,
+}
+
+impl pulp::NullaryFnOnce for TileWork<'_, '_> {
+    type Output = Result<RayCounts, RenderError>;
+
+    // What is inlined into this function, and only that, is compiled for the wider instructions.
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let tile = self.film.tiles()[self.index];
+        let mut samples = vec![PixelSample::default(); (tile.width * tile.height) as usize];
+        let mut block = Block::new(self.gatherer, self.sample);
+        for y in (tile.y..tile.y + tile.height).step_by(BLOCK as usize) {
+            self.progress.check()?;
+            for x in (tile.x..tile.x + tile.width).step_by(BLOCK as usize) {
+                block.run(x, y, tile, &mut samples);
+            }
         }
+        self.film.take(self.index, samples);
+        Ok(block.rays())
     }
-    film.take(index, samples);
-    Ok(block.rays())
 }
 
 /// Points that the camera and its gather rays see: a pilot that decides how fine the cells are.
@@ -163,11 +219,12 @@ pub fn seen_points(lit: &LitScene<'_>, seed: u32) -> Vec<Vec3> {
     const GATHER_RAYS: u32 = 4;
     const MAX_DEPTH: u32 = 8;
     let camera = &lit.accel.scene().camera;
-    let [left, bottom, width, height] = camera.region.map(f64::from);
+    let frame = DVec2::from(camera.resolution.map(f64::from));
     let points = (0..EDGE * EDGE).into_par_iter().flat_map_iter(|i| {
         let mut rng = Rng::new(hash(hash(u64::from(seed), 0x70_69_6c_6f_74), u64::from(i)));
+        // The whole frame, so that a border crops the picture and changes nothing in it.
         let at = DVec2::new(f64::from(i % EDGE), f64::from(i / EDGE)) + 0.5;
-        let position = DVec2::new(left, bottom) + at / f64::from(EDGE) * DVec2::new(width, height);
+        let position = at / f64::from(EDGE) * frame;
         let (ray, _) = camera_ray(camera, lit, position);
         let mut points = Vec::new();
         if let Some(surface) = first_scatterer(lit, ray, MAX_DEPTH, &mut rng) {

@@ -169,7 +169,7 @@ impl<'a> Gatherer<'a> {
             let hit = self.lit.accel.intersect(&ray);
             let readable = hit.filter(|_| !sample.is_delta).and_then(|hit| self.readable(&hit, 0.0));
             if let Some(readable) = readable {
-                let (p, class) = readable.place(&ray, self.pyramid);
+                let (p, class) = readable.place(&ray, &self.pyramid);
                 let irradiance = self.pyramid.irradiance(p, class, readable.level);
                 return radiance + throughput * readable.albedo_over_pi * irradiance;
             }

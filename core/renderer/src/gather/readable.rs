@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::accel::{Hit, Ray};
 use crate::color::Rgb;
-use crate::pyramid::Pyramid;
+use crate::pyramid::View;
 
 use super::Gatherer;
 
@@ -18,8 +18,8 @@ pub(super) struct Readable {
 
 impl Readable {
     /// Where the ray that met it is to be looked up: position and normal class.
-    #[inline]
-    pub(super) fn place(&self, ray: &Ray, pyramid: &Pyramid) -> (Vec3, usize) {
+    #[inline(always)]
+    pub(super) fn place(&self, ray: &Ray, pyramid: &View<'_>) -> (Vec3, usize) {
         let facing = if ray.direction.dot(self.ng) > 0.0 { -self.ng } else { self.ng };
         (ray.origin + ray.direction * self.t, pyramid.class(facing))
     }
@@ -27,7 +27,7 @@ impl Readable {
 
 impl Gatherer<'_> {
     /// What to read for a hit; `None` where there is more to it than a look-up. `solid_angle` is what the ray stands for.
-    #[inline]
+    #[inline(always)]
     pub(super) fn readable(&self, hit: &Hit, solid_angle: f32) -> Option<Readable> {
         if self.lit.accel.is_lamp(hit.object) {
             return None;

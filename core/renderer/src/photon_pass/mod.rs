@@ -15,7 +15,7 @@ use crate::color::Rgb;
 use crate::error::RenderError;
 use crate::lit_scene::{LitScene, Surface, lobes_lit, ray_kind};
 use crate::progress::Progress;
-use crate::pyramid::{Accumulator, Landing};
+use crate::pyramid::{Accumulator, Landing, SETS};
 use crate::sampling::PhotonSampler;
 use crate::scene::visibility;
 use crate::settings::PhotonPassSettings;
@@ -38,7 +38,7 @@ pub struct PhotonPassCounts {
     pub segments: u64,
 }
 
-/// Traces the photons with ids in `0..photon_count`.
+/// Traces the photons with ids in `0..photon_count`, dealt in order into `sets` sets.
 ///
 /// # Errors
 /// [`RenderError::Cancelled`].
@@ -46,6 +46,7 @@ pub fn run(
     lit: &LitScene<'_>,
     settings: &PhotonPassSettings,
     seed: u32,
+    sets: usize,
     accumulator: &Accumulator<'_>,
     progress: &Progress,
 ) -> Result<PhotonPassCounts, RenderError> {
@@ -54,13 +55,18 @@ pub fn run(
         return Ok(PhotonPassCounts::default());
     }
     let (segments, done) = (AtomicU64::new(0), AtomicU64::new(0));
+    let tracer = Tracer { lit, accumulator, max_depth: settings.max_depth };
+    let set_of = |id: u64| (id * sets as u64 / count) as usize;
     #[expect(clippy::cast_precision_loss, reason = "a share of at most 10^9 photons")]
-    let tracer =
-        Tracer { lit, accumulator, share: (1.0 / count as f64) as f32, max_depth: settings.max_depth };
+    let shares: [f32; SETS] = std::array::from_fn(|set| {
+        let first = |set: usize| (set as u64 * count).div_ceil(sets as u64);
+        (1.0 / (first(set + 1) - first(set)).max(1) as f64) as f32
+    });
     (0..count.div_ceil(BATCH)).into_par_iter().try_for_each(|batch| {
         progress.check()?;
         let ids = batch * BATCH..((batch + 1) * BATCH).min(count);
-        let traced: u64 = ids.clone().map(|id| tracer.photon(PhotonSampler::new(id, seed))).sum();
+        let photon = |id| tracer.photon(PhotonSampler::new(id, seed), set_of(id), shares[set_of(id)]);
+        let traced: u64 = ids.clone().map(photon).sum();
         segments.fetch_add(traced, Ordering::Relaxed);
         let done = done.fetch_add(ids.end - ids.start, Ordering::Relaxed);
         #[expect(clippy::cast_precision_loss, reason = "a fraction for a status line")]
@@ -73,17 +79,15 @@ pub fn run(
 struct Tracer<'a> {
     lit: &'a LitScene<'a>,
     accumulator: &'a Accumulator<'a>,
-    /// One photon's share of the light.
-    share: f32,
     max_depth: u32,
 }
 
 impl Tracer<'_> {
-    /// Follows one photon from its lamp; gives the number of segments traced.
-    fn photon(&self, mut sampler: PhotonSampler) -> u64 {
+    /// Follows one photon, a share of the light of its set, from its lamp; gives the number of segments traced.
+    fn photon(&self, mut sampler: PhotonSampler, set: usize, share: f32) -> u64 {
         let u = [sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw()];
         let Some(emission) = self.lit.lights.emit(u) else { return 0 };
-        let flux = emission.flux * self.share;
+        let flux = emission.flux * share;
         let leaving = match emission.normal {
             Some(normal) => {
                 Ray::leaving(emission.origin, normal, emission.direction, visibility::DIFFUSE).origin
@@ -99,7 +103,7 @@ impl Tracer<'_> {
             let Some(hit) = self.lit.accel.intersect(&ray) else { break };
             travelled += hit.t;
             if travelled >= emission.lit_from {
-                segments += self.scatter(ray, hit, flux, lobes, &mut sampler);
+                segments += self.scatter(ray, hit, flux, set, lobes, &mut sampler);
             }
             if emission.casts_shadow {
                 break;
@@ -116,6 +120,7 @@ impl Tracer<'_> {
         mut ray: Ray,
         mut hit: Hit,
         mut flux: Rgb,
+        set: usize,
         lit_lobes: LobeSet,
         sampler: &mut PhotonSampler,
     ) -> u64 {
@@ -126,7 +131,7 @@ impl Tracer<'_> {
             let bsdf = &surface.bsdf;
             if bsdf.has(lobes_read(lobes)) {
                 let stored = flux * bsdf.frame.irradiance_factor(-ray.direction);
-                let landing = self.accumulator.deposit(surface.p, bsdf.frame.ng, stored);
+                let landing = self.accumulator.deposit(set, surface.p, bsdf.frame.ng, stored);
                 if let Some(landing) =
                     landing.filter(|_| bsdf.has(lobes_read(lobes).without(LobeSet::DIFFUSE)))
                 {

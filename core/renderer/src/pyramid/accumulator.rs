@@ -1,4 +1,7 @@
 //! Flux while photons land: integer sums, so that the order of photons, threads and machines does not matter.
+//!
+//! Photons come in two sets that are kept apart, each an estimate of all the light: what two halves of a picture read from
+//! different sets differs by the photons' noise too.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -11,12 +14,16 @@ use super::layout::Layout;
 use crate::color::Rgb;
 use crate::math::Frame;
 
+/// Sets of photons.
+pub const SETS: usize = 2;
+
 /// Flux and photons of every cell that can receive light directly.
 #[derive(Debug)]
 pub struct Accumulator<'a> {
     layout: &'a Layout,
-    /// By level, by place: red, green, blue in quanta.
-    flux: Vec<Vec<[AtomicI64; 3]>>,
+    /// By level, by place, by set: red, green, blue in quanta.
+    flux: Vec<Vec<[[AtomicI64; 3]; SETS]>>,
+    /// By level, by place: photons of all sets.
     count: Vec<Vec<AtomicU32>>,
     /// By level, by place, where there are glossy surfaces at all; filled where the first photon lands on one.
     glossy: Vec<Vec<OnceLock<GlossySums>>>,
@@ -28,7 +35,7 @@ pub struct Accumulator<'a> {
     lost: AtomicU64,
 }
 
-/// Quanta of each channel of each bin.
+/// Quanta of each channel of each bin, the bins of one set after those of the other.
 type GlossySums = Box<[[AtomicI64; 3]]>;
 
 /// The cell a photon was added to.
@@ -36,6 +43,7 @@ type GlossySums = Box<[[AtomicI64; 3]]>;
 pub struct Landing {
     level: usize,
     place: usize,
+    set: usize,
 }
 
 /// One photon of a billion still is some million quanta, and two thousand times the emitted flux fits in a cell.
@@ -69,28 +77,28 @@ impl<'a> Accumulator<'a> {
         }
     }
 
-    /// Adds a photon that lands at `p` on the side of a surface whose geometric normal is `normal`; gives the cell.
-    pub fn deposit(&self, p: Vec3, normal: Vec3, flux: Rgb) -> Option<Landing> {
+    /// Adds a photon of a set that lands at `p` on the side of a surface whose geometric normal is `normal`; gives the cell.
+    pub fn deposit(&self, set: usize, p: Vec3, normal: Vec3, flux: Rgb) -> Option<Landing> {
         let class = self.layout.classes.of(normal);
         let place = self.layout.find(p, class).filter(|_| flux.is_finite());
         let Some((level, place)) = place else {
             self.lost.fetch_add(1, Ordering::Relaxed);
             return None;
         };
-        self.add(&self.flux[level][place], flux);
+        self.add(&self.flux[level][place][set], flux);
         self.count[level][place].fetch_add(1, Ordering::Relaxed);
         self.deposited.fetch_add(1, Ordering::Relaxed);
-        Some(Landing { level, place })
+        Some(Landing { level, place, set })
     }
 
     /// Adds what the photon's surface sends in each direction: `leaving` gives flux times BSDF over tint (W·sr⁻¹) towards a
     /// unit vector. `at` in [0, 1)² is where in each bin that is asked; a random place averages over the bin.
     pub fn deposit_glossy(&self, landing: Landing, at: [f32; 2], leaving: impl Fn(Vec3) -> Rgb) {
-        let (level, place) = (landing.level, landing.place);
-        let empty = || std::iter::repeat_with(Default::default).take(self.bins.count()).collect();
+        let (level, place, count) = (landing.level, landing.place, self.bins.count());
+        let empty = || std::iter::repeat_with(Default::default).take(SETS * count).collect();
         let sums = self.glossy[level][place].get_or_init(empty);
         let frame = Frame::new(self.layout.levels[level].surfaces[place].mean_normal());
-        for (bin, sum) in sums.iter().enumerate() {
+        for (bin, sum) in sums[landing.set * count..][..count].iter().enumerate() {
             let value = leaving(frame.from_local(self.bins.direction(bin, at)));
             if value.is_finite() && !value.is_black() {
                 self.add(sum, value);
@@ -120,11 +128,12 @@ impl<'a> Accumulator<'a> {
     /// Memory (bytes).
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let sums = self.flux.iter().map(|level| level.len() * (size_of::<[i64; 3]>() + size_of::<u32>()));
+        let sums =
+            self.flux.iter().map(|level| level.len() * (size_of::<[[i64; 3]; SETS]>() + size_of::<u32>()));
         let glossy = self.glossy.iter().map(|level| {
             let filled = level.iter().filter(|cell| cell.get().is_some()).count();
             level.len() * size_of::<OnceLock<GlossySums>>()
-                + filled * self.bins.count() * size_of::<[i64; 3]>()
+                + filled * self.bins.count() * size_of::<[[i64; 3]; SETS]>()
         });
         sums.chain(glossy).sum()
     }
@@ -135,7 +144,7 @@ impl<'a> Accumulator<'a> {
             flux.into_iter()
                 .zip(count)
                 .map(|(flux, count)| CellSum {
-                    flux: flux.map(AtomicI64::into_inner),
+                    flux: flux.map(|set| set.map(AtomicI64::into_inner)),
                     count: u64::from(count.into_inner()),
                 })
                 .collect()
@@ -155,7 +164,7 @@ impl<'a> Accumulator<'a> {
 pub(super) struct Sums {
     /// By level, by place.
     pub(super) cells: Vec<Vec<CellSum>>,
-    /// By level: quanta of each bin of the glossy cells, by place.
+    /// By level: quanta of each bin of each set of the glossy cells, by place.
     pub(super) glossy: Vec<BTreeMap<usize, Vec<[i64; 3]>>>,
     /// How the hemisphere is cut.
     pub(super) bins: DirectionBins,
@@ -167,15 +176,15 @@ pub(super) struct Sums {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct CellSum {
     /// Quanta of each channel.
-    pub flux: [i64; 3],
+    pub flux: [[i64; 3]; SETS],
     /// Photons.
     pub count: u64,
 }
 
 impl CellSum {
     pub(super) fn add(&mut self, other: &Self) {
-        for c in 0..3 {
-            self.flux[c] += other.flux[c];
+        for (sum, flux) in self.flux.as_flattened_mut().iter_mut().zip(other.flux.as_flattened()) {
+            *sum += flux;
         }
         self.count += other.count;
     }

@@ -7,6 +7,7 @@ use std::f32::consts::TAU;
 
 use glam::Vec3;
 
+use super::accumulator::SETS;
 use crate::color::Rgb;
 use crate::math::Frame;
 
@@ -69,8 +70,8 @@ impl DirectionBins {
 pub(super) struct BinStore {
     pub(super) bins: DirectionBins,
     values: Vec<[u16; 3]>,
-    /// By cell: its largest value over 65535, and its frame's normal.
-    cells: Vec<(f32, Vec3)>,
+    /// By cell: the largest value of each set over 65535, and its frame's normal.
+    cells: Vec<([f32; SETS], Vec3)>,
 }
 
 impl BinStore {
@@ -78,20 +79,24 @@ impl BinStore {
         Self { bins, values: Vec::new(), cells: Vec::new() }
     }
 
-    /// Adds a cell and returns its number. `radiance` is in units of `unit`.
-    pub(super) fn push(&mut self, normal: Vec3, sums: &[[i64; 3]], unit: f64) -> u32 {
-        let largest = sums.as_flattened().iter().copied().max().unwrap_or(0).max(1) as f64;
-        let share = |value: i64| (value.max(0) as f64 / largest * 65535.0).round() as u16;
-        self.values.extend(sums.iter().map(|sum| sum.map(share)));
-        self.cells.push(((largest * unit / 65535.0) as f32, normal));
+    /// Adds a cell and returns its number. The sums of each set are in units of `unit`.
+    pub(super) fn push(&mut self, normal: Vec3, sets: [&[[i64; 3]]; SETS], unit: f64) -> u32 {
+        let units = sets.map(|sums| {
+            let largest = sums.as_flattened().iter().copied().max().unwrap_or(0).max(1) as f64;
+            let share = |value: i64| (value.max(0) as f64 / largest * 65535.0).round() as u16;
+            self.values.extend(sums.iter().map(|sum| sum.map(share)));
+            (largest * unit / 65535.0) as f32
+        });
+        self.cells.push((units, normal));
         self.cells.len() as u32 - 1
     }
 
-    /// Radiance of a cell towards the unit vector `direction`; see [`DirectionBins::bin`] for `shift`.
-    pub(super) fn radiance(&self, cell: u32, direction: Vec3, shift: [f32; 2]) -> Rgb {
-        let (unit, normal) = self.cells[cell as usize];
+    /// Radiance of a cell in one set towards the unit vector `direction`; see [`DirectionBins::bin`] for `shift`.
+    pub(super) fn radiance(&self, cell: u32, set: usize, direction: Vec3, shift: [f32; 2]) -> Rgb {
+        let (units, normal) = self.cells[cell as usize];
         let bin = self.bins.bin(Frame::new(normal).to_local(direction), shift);
-        Rgb(self.values[cell as usize * self.bins.count() + bin].map(|v| f32::from(v) * unit))
+        let values = self.values[(cell as usize * SETS + set) * self.bins.count() + bin];
+        Rgb(values.map(|v| f32::from(v) * units[set]))
     }
 
     pub(super) const fn len(&self) -> usize {
@@ -99,7 +104,7 @@ impl BinStore {
     }
 
     pub(super) const fn bytes(&self) -> usize {
-        self.values.len() * size_of::<[u16; 3]>() + self.cells.len() * size_of::<(f32, Vec3)>()
+        self.values.len() * size_of::<[u16; 3]>() + self.cells.len() * size_of::<([f32; SETS], Vec3)>()
     }
 }
 
@@ -136,13 +141,16 @@ mod tests {
     fn stored_radiance_comes_back() {
         let mut store = BinStore::new(BINS);
         let sums: Vec<[i64; 3]> = (0..128).map(|i| [i * 1000, i * i, 0]).collect();
-        let cell = store.push(Vec3::X, &sums, 1e-3);
+        let twice: Vec<[i64; 3]> = sums.iter().map(|sum| sum.map(|v| 2 * v)).collect();
+        let cell = store.push(Vec3::X, [&sums, &twice], 1e-3);
         let frame = Frame::new(Vec3::X);
-        for (bin, sum) in sums.iter().enumerate() {
-            let direction = frame.from_local(BINS.direction(bin, [0.5, 0.5]));
-            let got = store.radiance(cell, direction, [0.0, 0.0]);
-            for (got, sum) in got.0.iter().zip(sum) {
-                assert!((got - *sum as f32 * 1e-3).abs() < 127.0 / 65535.0, "bin {bin}");
+        for (set, sums) in [&sums, &twice].into_iter().enumerate() {
+            for (bin, sum) in sums.iter().enumerate() {
+                let direction = frame.from_local(BINS.direction(bin, [0.5, 0.5]));
+                let got = store.radiance(cell, set, direction, [0.0, 0.0]);
+                for (got, sum) in got.0.iter().zip(sum) {
+                    assert!((got - *sum as f32 * 1e-3).abs() < 254.0 / 65535.0, "bin {bin}");
+                }
             }
         }
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::accumulator::{Accumulator, CellSum, Sums};
+use super::accumulator::{Accumulator, CellSum, SETS, Sums};
 use super::bins::BinStore;
 use super::index::{CellKey, LevelIndex};
 use super::layout::Layout;
@@ -42,16 +42,19 @@ impl Pyramid {
             }
             let glossy = push_bins(layout, number, &sums, &mut store);
             let parents = levels.last();
-            let settle = |place: usize| {
-                let own = own_cell(layout, number, place, &sums, glossy.get(&place).copied());
-                let own = own.with(sums.cells[number][place].count >= enough, mixed[place]);
+            let settle = |place: usize| -> [Cell; SETS] {
                 let parent = parents.and_then(|parents| {
                     let (cell, class) = layout.levels[number].keys[place].cell(&layout.grid.levels[number]);
-                    parents.find(layout.grid.parent(number, cell)?, class)
+                    parents.index.find(layout.grid.parent(number, cell)?, class)
                 });
-                settle(layout, number, place, own, parent)
+                let enough = sums.cells[number][place].count >= enough;
+                std::array::from_fn(|set| {
+                    let own = own_cell(layout, number, place, &sums, set, glossy.get(&place).copied());
+                    let parent = parents.zip(parent).map(|(parents, place)| &parents.cells[set][place]);
+                    settle(layout, number, place, own.with(enough, mixed[place]), parent)
+                })
             };
-            let values: Vec<Cell> =
+            let values: Vec<[Cell; SETS]> =
                 (0..layout.levels[number].keys.len()).into_par_iter().map(settle).collect();
             levels.push(keep_lit(layout, number, &sums.cells[number], &values));
         }
@@ -59,10 +62,17 @@ impl Pyramid {
     }
 }
 
-/// A cell with its own light.
-fn own_cell(layout: &Layout, number: usize, place: usize, sums: &Sums, glossy: Option<u32>) -> Cell {
+/// A cell with its own light of one set.
+fn own_cell(
+    layout: &Layout,
+    number: usize,
+    place: usize,
+    sums: &Sums,
+    set: usize,
+    glossy: Option<u32>,
+) -> Cell {
     let area = layout.levels[number].surfaces[place].area as f64 * layout.area_unit;
-    let flux = sums.cells[number][place].flux;
+    let flux = sums.cells[number][place].flux[set];
     Cell::new(Rgb(flux.map(|flux| (flux as f64 * sums.quantum / area) as f32)), glossy)
 }
 
@@ -86,7 +96,8 @@ fn push_bins(layout: &Layout, number: usize, sums: &Sums, store: &mut BinStore) 
     cells
         .map(|(&place, bins)| {
             let area = surfaces[place].glossy_area.max(1) as f64 * layout.area_unit;
-            (place, store.push(surfaces[place].mean_normal(), bins, sums.quantum / area))
+            let sets = std::array::from_fn(|set| &bins[set * sums.bins.count()..][..sums.bins.count()]);
+            (place, store.push(surfaces[place].mean_normal(), sets, sums.quantum / area))
         })
         .collect()
 }
@@ -105,9 +116,11 @@ fn merge(layout: &Layout, sums: &mut Sums) {
         let (coarser, finer) = sums.glossy.split_at_mut(level);
         for (&place, values) in &finer[0] {
             if let Some(parent) = layout.parent(level, place) {
-                let empty = || vec![[0; 3]; sums.bins.count()];
-                let total = coarser[level - 1].entry(parent).or_insert_with(empty);
-                sums.bins.add(&frame(level, place), values, &frame(level - 1, parent), total);
+                let count = sums.bins.count();
+                let total = coarser[level - 1].entry(parent).or_insert_with(|| vec![[0; 3]; SETS * count]);
+                for (values, total) in values.chunks(count).zip(total.chunks_mut(count)) {
+                    sums.bins.add(&frame(level, place), values, &frame(level - 1, parent), total);
+                }
             }
         }
     }
@@ -115,9 +128,10 @@ fn merge(layout: &Layout, sums: &mut Sums) {
 
 /// Cells without a photon need no memory: what is missing is dark where its parent holds enough photons to know, and
 /// else read from the parent.
-fn keep_lit(layout: &Layout, number: usize, sums: &[CellSum], values: &[Cell]) -> Level {
+fn keep_lit(layout: &Layout, number: usize, sums: &[CellSum], values: &[[Cell; SETS]]) -> Level {
     let places: Vec<usize> = (0..values.len()).filter(|&place| sums[place].count > 0).collect();
     let keys = places.iter().map(|&place| -> CellKey { layout.levels[number].keys[place] });
     let index = LevelIndex::new(&layout.grid.levels[number], layout.classes.count(), keys);
-    Level { index, cells: places.iter().map(|&place| values[place]).collect() }
+    let cells = std::array::from_fn(|set| places.iter().map(|&place| values[place][set]).collect());
+    Level { index, cells }
 }

@@ -22,7 +22,7 @@ pub struct LevelBox {
 impl LevelBox {
     /// Cell coordinates within the box, or `None` outside.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn cell(&self, offset: Vec3) -> Option<IVec3> {
         let cell = (offset * self.inverse_cell_size).floor().as_ivec3() - self.low;
         (cell.cmpge(IVec3::ZERO) & cell.cmplt(self.size)).all().then_some(cell)
@@ -95,7 +95,7 @@ impl Grid {
 
     /// Position relative to the lattice's origin, as [`LevelBox::cell`] wants it.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn offset(&self, p: Vec3) -> Vec3 {
         p - self.origin
     }
@@ -120,7 +120,7 @@ impl Grid {
 
     /// The finest level at or above `level` whose box holds the position, with the cell.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn locate(&self, offset: Vec3, level: usize) -> Option<(usize, IVec3)> {
         if let Some(cell) = self.levels[level].cell(offset) {
             return Some((level, cell));

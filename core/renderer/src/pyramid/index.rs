@@ -92,14 +92,14 @@ impl LevelIndex {
     }
 
     /// First half of [`LevelIndex::find`]: the number of the cell's brick, and the cell's bit in it.
-    #[inline]
+    #[inline(always)]
     pub(super) fn brick(&self, cell: IVec3) -> (u32, u32) {
         let (brick, bit) = split(cell, self.size);
         (self.bricks[brick], bit)
     }
 
     /// Second half of [`LevelIndex::find`].
-    #[inline]
+    #[inline(always)]
     pub(super) fn place(&self, brick: u32, bit: u32, class: usize) -> Option<usize> {
         if brick == NO_BRICK {
             return None;

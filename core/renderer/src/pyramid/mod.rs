@@ -23,15 +23,17 @@ mod clip;
 mod grid;
 mod index;
 mod layout;
+mod lookup;
 mod mixed;
 
 use glam::{IVec3, Vec3};
 
-pub use accumulator::{Accumulator, Landing};
+pub use accumulator::{Accumulator, Landing, SETS};
 pub use bins::DirectionBins;
 pub use class::NormalClasses;
 pub use grid::Grid;
 pub use layout::{Layout, SurfaceTriangle};
+pub use lookup::View;
 
 use crate::color::Rgb;
 use bins::BinStore;
@@ -77,13 +79,14 @@ impl Cell {
 #[derive(Debug)]
 struct Level {
     index: LevelIndex,
-    cells: Vec<Cell>,
+    /// By set of photons, by place.
+    cells: [Vec<Cell>; SETS],
 }
 
 impl Level {
     #[inline]
-    fn find(&self, cell: IVec3, class: usize) -> Option<&Cell> {
-        self.index.find(cell, class).map(|place| &self.cells[place])
+    fn find(&self, set: usize, cell: IVec3, class: usize) -> Option<&Cell> {
+        self.index.find(cell, class).map(|place| &self.cells[set][place])
     }
 }
 
@@ -106,7 +109,7 @@ impl Pyramid {
     /// Cells that hold light, all levels.
     #[must_use]
     pub fn cell_count(&self) -> usize {
-        self.levels.iter().map(|level| level.cells.len()).sum()
+        self.levels.iter().map(|level| level.index.len()).sum()
     }
 
     /// Memory (bytes).
@@ -114,7 +117,7 @@ impl Pyramid {
     pub fn bytes(&self) -> usize {
         self.levels
             .iter()
-            .map(|level| level.index.bytes() + level.cells.len() * size_of::<Cell>())
+            .map(|level| level.index.bytes() + level.index.len() * size_of::<[Cell; SETS]>())
             .sum::<usize>()
             + self.store.bytes()
     }
@@ -133,7 +136,7 @@ impl Pyramid {
 
     /// Normal class of a surface seen from the side of `normal` (unit, geometric).
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn class(&self, normal: Vec3) -> usize {
         self.classes.of(normal)
     }
@@ -141,12 +144,12 @@ impl Pyramid {
     /// Level whose cells match a footprint (paper, eq. 5), one finer: half the blur for no more noise. `footprint` is the
     /// area Ω r² in square scene units.
     #[must_use]
-    #[inline]
     #[expect(
         clippy::cast_possible_wrap,
         clippy::cast_sign_loss,
         reason = "exponents and level numbers are small"
     )]
+    #[inline(always)]
     pub fn level_for(&self, footprint: f32) -> usize {
         let l = self.finest_cell_size();
         let ratio = (footprint / (l * l)).clamp(1.0, 1e30);
@@ -170,106 +173,9 @@ impl Pyramid {
         self.grid.levels[level].cell_size
     }
 
-    /// Irradiance (W·m⁻²) at `p` on a surface of class `class`, averaged over a cell of level `level`, or of the finest
-    /// coarser level that reaches there and knows. Black where no light arrives.
+    /// Reads the light of one set of photons, below [`SETS`].
     #[must_use]
-    #[inline]
-    pub fn irradiance(&self, p: Vec3, class: usize, level: usize) -> Rgb {
-        self.find(p, class, level).map_or(Rgb::BLACK, Cell::irradiance)
-    }
-
-    /// [`Pyramid::irradiance`] of several places at once, where `set`: one step for all before the next, so that the
-    /// memory is waited for once and not once per place.
-    #[must_use]
-    #[inline]
-    pub fn irradiances<const N: usize>(
-        &self,
-        p: &[Vec3; N],
-        class: &[usize; N],
-        level: &[usize; N],
-        set: &[bool; N],
-    ) -> [Rgb; N] {
-        let mut found = [None; N];
-        let mut bricks = [(0, 0, 0); N];
-        for i in (0..N).filter(|&i| set[i]) {
-            found[i] = self.grid.locate(self.grid.offset(p[i]), level[i]);
-        }
-        for i in 0..N {
-            if let Some((level, cell)) = found[i] {
-                let (brick, bit) = self.levels[level].index.brick(cell);
-                bricks[i] = (level, brick, bit);
-            }
-        }
-        let mut places = [None; N];
-        for i in 0..N {
-            let (level, brick, bit) = bricks[i];
-            places[i] = found[i].and_then(|_| self.levels[level].index.place(brick, bit, class[i]));
-        }
-        let mut out = [Rgb::BLACK; N];
-        for i in (0..N).filter(|&i| set[i]) {
-            out[i] = match places[i].map(|place| &self.levels[bricks[i].0].cells[place]) {
-                Some(cell) if !cell.is_mixed() => cell.irradiance(),
-                _ => self.irradiance(p[i], class[i], level[i]),
-            };
-        }
-        out
-    }
-
-    /// Radiance (W·m⁻²·sr⁻¹) of the glossy surfaces of class `class` at `p` towards the unit vector `direction`, divided by
-    /// their tint; `shift` in [-½, ½]² as in [`DirectionBins::bin`].
-    #[must_use]
-    pub fn glossy_radiance(
-        &self,
-        p: Vec3,
-        class: usize,
-        level: usize,
-        direction: Vec3,
-        shift: [f32; 2],
-    ) -> Rgb {
-        let glossy = self.find(p, class, level).and_then(Cell::glossy);
-        glossy.map_or(Rgb::BLACK, |number| self.store.radiance(number, direction, shift))
-    }
-
-    /// The cell to read; `None` where it is dark.
-    #[inline]
-    fn find(&self, p: Vec3, class: usize, level: usize) -> Option<&Cell> {
-        let offset = self.grid.offset(p);
-        let (level, cell) = self.grid.locate(offset, level)?;
-        match self.levels[level].find(cell, class) {
-            Some(found) if found.is_mixed() && found.holds_enough() => {
-                self.find_finer(found, offset, class, level)
-            }
-            Some(found) => Some(found),
-            None => self.find_coarser(cell, class, level),
-        }
-    }
-
-    /// Below a mixed cell: the coarsest that is none or too poor in photons to be split, or the finest there is.
-    fn find_finer<'a>(
-        &'a self,
-        mut found: &'a Cell,
-        offset: Vec3,
-        class: usize,
-        level: usize,
-    ) -> Option<&'a Cell> {
-        for level in level + 1..self.levels.len() {
-            let Some(cell) = self.grid.levels[level].cell(offset) else { break };
-            found = self.levels[level].find(cell, class)?;
-            if !(found.is_mixed() && found.holds_enough()) {
-                break;
-            }
-        }
-        Some(found)
-    }
-
-    /// Above a cell without a photon: dark where enough photons landed beside it to know.
-    fn find_coarser(&self, mut cell: IVec3, class: usize, mut level: usize) -> Option<&Cell> {
-        while level > 0 {
-            (cell, level) = (self.grid.parent(level, cell)?, level - 1);
-            if let Some(found) = self.levels[level].find(cell, class) {
-                return (!found.holds_enough()).then_some(found);
-            }
-        }
-        None
+    pub const fn view(&self, set: usize) -> View<'_> {
+        View { pyramid: self, set }
     }
 }

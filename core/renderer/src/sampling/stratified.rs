@@ -9,6 +9,18 @@
 /// Pixels that share a stratum.
 pub const LANES: usize = 16;
 
+/// What tells the points of several pixels apart.
+#[derive(Clone, Copy, Debug)]
+pub struct PixelSeeds<const N: usize>([[u32; N]; 2]);
+
+impl<const N: usize> PixelSeeds<N> {
+    /// From one seed a pixel.
+    #[must_use]
+    pub fn new(seeds: &[u32; N]) -> Self {
+        Self([0x68BC_21EB, 0x02E5_BE93].map(|dimension| seeds.map(|seed| mix(seed ^ dimension))))
+    }
+}
+
 /// A point set shared by all pixels of a picture.
 #[derive(Debug)]
 pub struct StratifiedSet {
@@ -48,20 +60,20 @@ impl StratifiedSet {
     /// Point `index` of the pixel with the seed `seed`, in [0, 1)².
     #[must_use]
     pub fn point(&self, index: usize, seed: u32) -> [f32; 2] {
-        let [x, y] = self.points(index, &[seed]);
+        let [x, y] = self.points(index, &PixelSeeds::new(&[seed]));
         [x[0], y[0]]
     }
 
     /// Point `index` of several pixels at once: first and second coordinates.
     #[must_use]
-    pub fn points<const N: usize>(&self, index: usize, seeds: &[u32; N]) -> [[f32; N]; 2] {
+    #[inline(always)]
+    pub fn points<const N: usize>(&self, index: usize, seeds: &PixelSeeds<N>) -> [[f32; N]; 2] {
         let (raw, shared) = (self.raw[index], self.shared[index]);
         let mut out = [[0.0; N]; 2];
         for (dimension, out) in out.iter_mut().enumerate() {
             let (raw, mask) = (raw[dimension], self.mask[dimension]);
             let top = shared[dimension] & mask;
-            for (value, &seed) in out.iter_mut().zip(seeds) {
-                let seed = mix(seed ^ [0x68BC_21EB, 0x02E5_BE93][dimension]);
+            for (value, &seed) in out.iter_mut().zip(&seeds.0[dimension]) {
                 *value = unit_float(top | (scramble(raw, seed) & !mask));
             }
         }

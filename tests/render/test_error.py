@@ -1,0 +1,79 @@
+"""The error that a render states, against the error it has.
+
+The truth is known from two renders with more rays and photons and other seeds: their noise is independent, so that the
+product of the differences from both has the squared error as its expectation. What is stated is noise: with so few
+photons that cells have to be large, the blur of the cells comes on top.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rgp_engine.__main__ import main
+from rgp_engine.cli import exr
+from scenes import common
+
+CLIPPED_AT = 8.0
+"""Times the mean, as in the core's statistics."""
+FACTOR = 1.5
+"""Halves of a well-spread set of rays differ more than independent ones: the error is stated rather too high."""
+TRUTH = ("photon_pass.photon_count=4000000", "gather.rays=1024", "gather.camera_samples=256")
+
+
+def render(scene: str, folder: Path, seed: int, *settings: str) -> tuple[Any, dict[str, Any]]:
+    """The combined picture (height, width, 3) and the statistics."""
+    picture, stats = folder / "picture.exr", folder / "stats.json"
+    arguments = [argument for setting in settings for argument in ("--set", setting)]
+    blend = common.SCENES / f"{scene}.blend"
+    command = ["render", str(blend), "-o", str(picture), "--stats", str(stats), "--resolution", "64x48"]
+    assert main([*command, "--seed", str(seed), *arguments]) == 0
+    return exr.read(picture).astype(np.float64), json.loads(stats.read_text())
+
+
+@pytest.mark.parametrize("scene", ["cornell_box", "table"])
+def test_error_is_the_true_error(scene: str, tmp_path: Path) -> None:
+    first, second = (render(scene, tmp_path, seed, *TRUTH)[0] for seed in (101, 102))
+    most = CLIPPED_AT * ((first + second) / 2.0).mean()
+    clipped = [np.minimum(picture, most) for picture in (first, second)]
+    mean = ((clipped[0] + clipped[1]) / 2.0).mean()
+    for photons, rays, camera_samples in (
+        (1_000_000, 256, 16),
+        (1_000_000, 64, 16),
+        (1_000_000, 1024, 64),
+        (200_000, 255, 7),
+    ):
+        settings = (
+            f"photon_pass.photon_count={photons}",
+            f"gather.rays={rays}",
+            f"gather.camera_samples={camera_samples}",
+        )
+        picture, stats = render(scene, tmp_path, 7, *settings)
+        picture = np.minimum(picture, most)
+        squared = ((picture - clipped[0]) * (picture - clipped[1])).mean()
+        truth = 100.0 * np.sqrt(max(squared, 0.0)) / mean
+        stated = stats["error"]["rms_clipped"]
+        assert truth / FACTOR < stated < truth * FACTOR, f"{settings}: {stated:.3f} %, in truth {truth:.3f} %"
+
+
+def test_no_second_pass_states_no_error(tmp_path: Path) -> None:
+    _, stats = render("cornell_box", tmp_path, 0, "gather.rays=16", "gather.camera_samples=1")
+    assert stats["error"] is None
+    assert stats["stopped_by"] == "rays"
+
+
+def test_render_stops_at_its_target(tmp_path: Path) -> None:
+    settings = ("gather.rays=4096", "gather.camera_samples=64", "photon_pass.photon_count=100000")
+    _, stats = render("cornell_box", tmp_path, 0, *settings, "gather.error_target=12")
+    assert stats["stopped_by"] == "error"
+    assert stats["error"]["rms_clipped"] <= 12.0
+    assert 2 <= stats["passes"] < 64
+
+
+def test_render_stops_when_time_is_up(tmp_path: Path) -> None:
+    settings = ("gather.rays=4096", "gather.camera_samples=1024", "photon_pass.photon_count=10000")
+    _, stats = render("cornell_box", tmp_path, 0, *settings, "gather.time_limit=1")
+    assert stats["stopped_by"] == "time"
+    assert 2 <= stats["passes"] < 1024
