@@ -218,7 +218,6 @@ class _Run:
             seconds=costs.photon_pass + costs.gather * self._ratio + costs.rest,
             error=error.percent,
             is_limit=error.is_limit,
-            rms_mean=error.rms_mean,
             bytes=shot.stats["pyramid"]["bytes"],
         )
         self._sweep.rows.append(row)
