@@ -13,8 +13,8 @@ CLIPPED_AT = 8.0
 """Times the picture's mean: what is brighter is white in any case, and pixels at the edge of a lamp would drown
 the error of all others. The same as in the statistics of a render."""
 
-# Noise of neighboring pixels is alike, as the pixel filter shares their samples; that of blocks is not.
-_BLOCK = 8
+# Noise of neighboring pixels is alike, as they share samples and strata; that of blocks is not.
+_BLOCK = 4
 # An error is told from none when its square is this many times the standard error that noise gives to it.
 _CERTAINTY = 2.0
 
