@@ -8,9 +8,9 @@ from types import ModuleType
 
 def _modules() -> tuple[ModuleType, ...]:
     """What is registered with Blender, lowest rank first."""
-    from . import engine, properties, ui
+    from . import engine, operators, properties, ui
 
-    return properties, ui, engine
+    return properties, operators, ui, engine
 
 
 def register() -> None:

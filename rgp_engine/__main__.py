@@ -6,17 +6,18 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from .cli import CommandError, compare, render
+from .cli import CommandError, accuracy, compare, render
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs one command. Returns the exit code: 0 done, 1 failed, 2 asked for something that does not exist."""
     parser = argparse.ArgumentParser(
         prog="python -m rgp_engine",
-        description="Render Blender files without Blender's window, and compare pictures.",
+        description="Render Blender files without Blender's window, and measure how accurate pictures are.",
     )
     commands = parser.add_subparsers(dest="command", required=True)
     render.add_arguments(commands)
+    accuracy.add_arguments(commands)
     compare.add_arguments(commands)
     options = parser.parse_args(arguments)
     try:
@@ -27,7 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _leave(exit_code: int) -> NoReturn:
+def leave(exit_code: int) -> NoReturn:
     """Ends the process at once where Blender is loaded: some versions hang or crash in their exit handlers."""
     sys.stdout.flush()
     sys.stderr.flush()
@@ -37,4 +38,4 @@ def _leave(exit_code: int) -> NoReturn:
 
 
 if __name__ == "__main__":
-    _leave(main())
+    leave(main())

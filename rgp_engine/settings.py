@@ -1,4 +1,4 @@
-"""From the property groups to the core's settings."""
+"""From the property groups to the core's settings, and back."""
 
 from typing import Any
 
@@ -25,3 +25,9 @@ def _core_value(value: Any) -> bool | int | float | str:
     if isinstance(value, bool | int | float | str):
         return value
     return "x".join(str(part) for part in value)
+
+
+def set_core_value(b_group: Any, name: str, value: Any) -> None:
+    """Sets a property to a value of the core's: text such as "8x16" becomes a pair of whole numbers."""
+    is_pair = getattr(b_group.bl_rna.properties[name], "is_array", False)
+    setattr(b_group, name, tuple(map(int, value.split("x"))) if is_pair else value)

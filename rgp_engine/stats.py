@@ -46,9 +46,15 @@ def effect_rows(stats: Mapping[str, Any]) -> list[tuple[str, str]]:
     """The effects plan of a stats file as labelled lines of text."""
     lines = []
     for effect in stats.get("effects", ()):
-        cost = f"{effect['seconds']:.2f} s" if effect["called_for"] else "not called for"
+        cost = ", ".join(effect_costs(effect)) if effect["called_for"] else "not called for"
         lines.append((_title(effect["name"]), f"{cost}: {effect['because']}"))
     return lines
+
+
+def effect_costs(effect: Mapping[str, Any]) -> list[str]:
+    """Time and, where it is known, memory of one effect."""
+    memory = [_mebibytes(effect["bytes"])] if "bytes" in effect else []
+    return [f"{effect['seconds']:.2f} s", *memory]
 
 
 def outlook(progress: Mapping[str, Any], target: float) -> str:

@@ -24,22 +24,22 @@ RUST_RANKS = {
 FREE_RANK = 0
 
 PYTHON_RANKS = {
-    "report": 0,
-    **dict.fromkeys(("native", "stats", "properties", "preferences"), 1),
-    **dict.fromkeys(("settings", "ui"), 2),
+    **dict.fromkeys(("report", "plot"), 0),
+    **dict.fromkeys(("native", "stats", "settings", "accuracy", "properties", "preferences"), 1),
+    **dict.fromkeys(("operators", "ui"), 2),
     "export": 3,
-    "session": 4,
+    **dict.fromkeys(("session", "sweep"), 4),
     "engine": 5,
     "__init__": 6,
     "cli": 7,
     "__main__": 8,
 }
 # Lower in rank, and still none of the importer's business.
-NEVER = {("ui", "native"), ("properties", "native"), ("preferences", "native")}
+NEVER = {("ui", "native"), ("properties", "native"), ("preferences", "native"), ("operators", "native")}
 # These run and are tested without Blender.
-WITHOUT_BPY = {"report", "native", "settings"}
+WITHOUT_BPY = {"report", "native", "settings", "plot", "accuracy"}
 # These serve a final render, whose scene is the depsgraph's and never the window's.
-WITHOUT_CONTEXT = {"engine", "session", "export", "native", "settings", "stats", "report"}
+WITHOUT_CONTEXT = {"engine", "session", "sweep", "export", "native", "settings", "stats", "report"}
 
 MAXIMUM_LINES = 500
 

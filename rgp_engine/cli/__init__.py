@@ -1,4 +1,4 @@
-"""The command line: `render` and `compare`."""
+"""The command line: `render`, `accuracy` and `compare`."""
 
 
 class CommandError(Exception):

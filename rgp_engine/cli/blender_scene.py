@@ -4,6 +4,7 @@ import platform
 from pathlib import Path
 from typing import Any
 
+from .. import register
 from . import CommandError
 from .assign import assign
 
@@ -21,6 +22,14 @@ _CYCLES_REFERENCE = (
     "time_limit=0",
 )
 _CYCLES_KINDS = ("diffuse", "glossy", "transmission")
+
+
+def register_engine() -> None:
+    """Makes the engine known to Blender, unless it is: there is one in a Blender that has the add-on enabled."""
+    import bpy
+
+    if not hasattr(bpy.types.Scene, "rgp"):
+        register()
 
 
 def open_scene(path: Path) -> Any:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..accuracy.error import CLIPPED_AT
 from . import CommandError, exr
 from .difference import draw_difference
 from .exr import Picture
@@ -21,6 +22,8 @@ class Comparison:
     """Root mean square error in percent; the brightest reference pixel is 100 % (the paper's metric)."""
     rms_mean: float
     """Root mean square error in percent of the reference's mean."""
+    rms_clipped: float
+    """The same of pictures that are clipped at eight times that mean: what a render's statistics call its error."""
     relmse: float
     """Mean of squared error over squared reference, plus 1 % of its squared mean so that black does not divide."""
     bias: float
@@ -42,9 +45,11 @@ def compare_pictures(picture: Picture, reference: Picture) -> Comparison:
     if mean <= 0.0:
         raise CommandError("the reference is black; errors relative to it mean nothing")
     rms = np.sqrt(np.mean((a - b) ** 2))
+    a_clipped, b_clipped = (np.minimum(part, CLIPPED_AT * mean) for part in (a, b))
     return Comparison(
         rms_peak=float(100.0 * rms / peak),
         rms_mean=float(100.0 * rms / mean),
+        rms_clipped=float(100.0 * np.sqrt(np.mean((a_clipped - b_clipped) ** 2)) / b_clipped.mean()),
         relmse=float(np.mean((a - b) ** 2 / (b**2 + 0.01 * mean**2))),
         bias=float(100.0 * (a.mean() / mean - 1.0)),
         nonfinite=int(is_finite.size - is_finite.sum()),
@@ -59,11 +64,12 @@ def add_arguments(commands: Any) -> None:
         description="Prints how far the picture A is from the reference B.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog=(
-            "rms_peak   root mean square error, brightest reference pixel = 100 %\n"
-            "rms_mean   root mean square error, mean of the reference = 100 %\n"
-            "relmse     mean of squared error over squared reference\n"
-            "bias       mean of A over mean of B, less one\n"
-            "nonfinite  pixels that are NaN or infinite, left out of the rest"
+            "rms_peak     root mean square error, brightest reference pixel = 100 %\n"
+            "rms_mean     root mean square error, mean of the reference = 100 %\n"
+            "rms_clipped  the same, both clipped at 8 times that mean\n"
+            "relmse       mean of squared error over squared reference\n"
+            "bias         mean of A over mean of B, less one\n"
+            "nonfinite    pixels that are NaN or infinite, left out of the rest"
         ),
     )
     parser.add_argument("picture", metavar="A.exr", type=Path)
@@ -82,8 +88,8 @@ def run(options: argparse.Namespace) -> None:
     if options.json:
         print(json.dumps(asdict(comparison), indent=2))
         return
-    for name in ("rms_peak", "rms_mean"):
-        print(f"{name:10} {getattr(comparison, name):9.4f} %")
-    print(f"{'relmse':10} {comparison.relmse:9.6f}")
-    print(f"{'bias':10} {comparison.bias:+9.4f} %")
-    print(f"{'nonfinite':10} {comparison.nonfinite:9d} pixels")
+    for name in ("rms_peak", "rms_mean", "rms_clipped"):
+        print(f"{name:11} {getattr(comparison, name):9.4f} %")
+    print(f"{'relmse':11} {comparison.relmse:9.6f}")
+    print(f"{'bias':11} {comparison.bias:+9.4f} %")
+    print(f"{'nonfinite':11} {comparison.nonfinite:9d} pixels")

@@ -1,46 +1,23 @@
 """Draws two pictures and their difference side by side."""
 
-import struct
-import zlib
+from math import ceil
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
+from ..plot import Drawing, Pixels, Text, rasterize, text_width, write_png
 from . import CommandError
 from .exr import Picture
 
-Pixels = npt.NDArray[np.uint8]
-
 _GAP = 8
 _BAR_HEIGHT = 12
-_TEXT_SCALE = 2
+_TEXT_SIZE, _TEXT_HEIGHT = 13, 18
 _BACKGROUND = 32
 
 # Difference / scale -1 .. 1 and its color: A darker than B is blue, A brighter is red.
 _STOPS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 _COLORS = ((0.6, 0.9, 1.0), (0.1, 0.35, 0.9), (0.0, 0.0, 0.0), (0.85, 0.15, 0.1), (1.0, 0.9, 0.5))
-
-# Letters of 3 x 5 dots, each row three bits.
-_GLYPHS = {
-    "0": "75557",
-    "1": "26227",
-    "2": "71747",
-    "3": "71717",
-    "4": "55711",
-    "5": "74717",
-    "6": "74757",
-    "7": "71111",
-    "8": "75757",
-    "9": "75717",
-    ".": "00002",
-    "-": "00700",
-    "+": "02720",
-    "%": "51245",
-    "A": "25755",
-    "B": "65656",
-    " ": "00000",
-}
 
 
 def draw_difference(path: Path, picture: Picture, reference: Picture) -> None:
@@ -58,7 +35,10 @@ def draw_difference(path: Path, picture: Picture, reference: Picture) -> None:
     ]
     strip = _beside(panels)
     bar = _scale_bar(strip.shape[1], 100.0 * scale)
-    _write_png(path, np.concatenate([_widened(strip, bar.shape[1]), bar]))
+    try:
+        write_png(path, np.concatenate([_widened(strip, bar.shape[1]), bar]))
+    except OSError as error:
+        raise CommandError(f"{path} cannot be written: {error.strerror}") from error
 
 
 def _display(picture: Picture) -> Pixels:
@@ -80,13 +60,9 @@ def _blank(height: int, width: int) -> Pixels:
 
 def _text(text: str) -> Pixels:
     """White letters on the background."""
-    picture = _blank(5 + 4, 4 * len(text))
-    for index, letter in enumerate(text):
-        for row, bits in enumerate(_GLYPHS[letter]):
-            for column in range(3):
-                if int(bits) >> (2 - column) & 1:
-                    picture[row + 2, 4 * index + column] = 255
-    return np.repeat(np.repeat(picture, _TEXT_SCALE, axis=0), _TEXT_SCALE, axis=1)
+    drawing = Drawing(ceil(text_width(text, _TEXT_SIZE)) + 4, _TEXT_HEIGHT, (_BACKGROUND,) * 3)
+    drawing.items.append(Text(text, (2.0, 13.0), _TEXT_SIZE, (255, 255, 255)))
+    return rasterize(drawing)
 
 
 def _titled(title: str, picture: Pixels) -> Pixels:
@@ -117,22 +93,3 @@ def _scale_bar(width: int, percent: float) -> Pixels:
     for start, label in zip(starts, labels, strict=True):
         row[:, start : start + label.shape[1]] = label
     return np.concatenate([_blank(_GAP, width), bar, row])
-
-
-def _write_png(path: Path, pixels: Pixels) -> None:
-    """An 8-bit RGB PNG (ISO/IEC 15948)."""
-    height, width, _ = pixels.shape
-    rows = b"".join(b"\0" + row.tobytes() for row in pixels)
-    parts = {
-        b"IHDR": struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0),
-        b"IDAT": zlib.compress(rows),
-        b"IEND": b"",
-    }
-    chunks = (
-        struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
-        for kind, content in parts.items()
-    )
-    try:
-        path.write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(chunks))
-    except OSError as error:
-        raise CommandError(f"{path} cannot be written: {error.strerror}") from error

@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import OpenEXR
 
 from . import CommandError
 
@@ -24,6 +23,9 @@ def read(path: Path) -> Picture:
 
 def read_channels(path: Path) -> dict[str, Picture]:
     """Every channel of every part of a file, by its full name: (height, width)."""
+    # Blender's own Python has no OpenEXR, and not every command needs it.
+    import OpenEXR
+
     if not path.is_file():
         raise CommandError(f"{path} does not exist")
     try:
@@ -55,6 +57,8 @@ def layer_of(channels: dict[str, Picture], layer: str, letters: str) -> Picture 
 
 def write(path: Path, picture: Picture) -> None:
     """Writes an RGB or RGBA picture (height, width, channels), rows from the top, as 32-bit float."""
+    import OpenEXR
+
     header: dict[str, Any] = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     name = "RGBA" if picture.shape[2] == 4 else "RGB"
     pixels = np.ascontiguousarray(picture, np.float32)

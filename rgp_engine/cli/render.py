@@ -8,12 +8,11 @@ import time
 from pathlib import Path
 from typing import Any
 
-from .. import register
 from ..report import last_outcome
 from ..stats import effect_rows, rows
 from . import CommandError, blender_scene, exr
-from .assign import assign
 from .exr import Picture
+from .scene_options import add_scene_options, apply_scene_options
 
 _EPILOG = """\
 SCENE.blend is rendered as F12 would, its compositor and sequencer left aside. Settings are those of the panels, such as
@@ -40,15 +39,7 @@ def add_arguments(commands: Any) -> None:
     parser.add_argument("--indirect", metavar="OUT.exr", type=Path, help="write the indirect light alone")
     parser.add_argument("--stats", metavar="OUT.json", type=Path, help="write times, counts and settings")
     parser.add_argument("--png", metavar="OUT.png", type=Path, help="write the picture as Blender shows it")
-    parser.add_argument(
-        "--set", metavar="GROUP.NAME=VALUE", action="append", default=[], help="change a setting"
-    )
-    parser.add_argument("--resolution", metavar="WxH", type=_resolution, help="pixels of the full frame")
-    parser.add_argument(
-        "--frame", metavar="N", type=int, help="frame to render instead of the file's current"
-    )
-    parser.add_argument("--threads", metavar="N", type=int, help="processor threads; 0 takes all")
-    parser.add_argument("--seed", metavar="N", type=int, help="another seed gives other noise")
+    add_scene_options(parser)
     parser.add_argument("--engine", choices=("RGP", "CYCLES"), default="RGP")
     parser.set_defaults(run=run)
 
@@ -58,10 +49,10 @@ def run(options: argparse.Namespace) -> None:
     outputs = [options.output, options.indirect, options.stats, options.png]
     for path in filter(None, outputs):
         _check_writable(path)
-    register()
+    blender_scene.register_engine()
     b_scene = blender_scene.open_scene(options.scene)
     blender_scene.choose_engine(b_scene, options.engine)
-    _apply(b_scene, options)
+    apply_scene_options(b_scene, options, options.engine)
     start = time.perf_counter()
     channels = _render(b_scene, wants_indirect=options.indirect is not None)
     stats = _stats(options.engine, time.perf_counter() - start)
@@ -73,26 +64,6 @@ def run(options: argparse.Namespace) -> None:
     if options.stats:
         options.stats.write_text(json.dumps(stats, indent=2) + "\n")
     _print_table(stats)
-
-
-def _apply(b_scene: Any, options: argparse.Namespace) -> None:
-    """Frame, size and settings."""
-    if options.frame is not None:
-        b_scene.frame_set(options.frame)
-    if options.resolution:
-        b_render = b_scene.render
-        b_render.resolution_x, b_render.resolution_y = options.resolution
-        b_render.resolution_percentage = 100
-    group = "render" if options.engine == "RGP" else "cycles"
-    if options.seed is not None:
-        assign(b_scene, f"{group}.seed={options.seed}")
-    if options.threads is not None:
-        # Blender's own number of threads is Cycles'; 0 is ours for all.
-        assign(b_scene, f"render.threads={options.threads}")
-        b_scene.render.threads_mode = "FIXED" if options.threads else "AUTO"
-        b_scene.render.threads = max(options.threads, 1)
-    for assignment in options.set:
-        assign(b_scene, assignment)
 
 
 def _render(b_scene: Any, *, wants_indirect: bool) -> dict[str, Picture]:
@@ -143,14 +114,6 @@ def _print_table(stats: dict[str, Any]) -> None:
     for problem in stats.get("problems", ()):
         times = f" ({problem['count']} times)" if problem["count"] > 1 else ""
         print(f"problem: {problem['subject']}: {problem['message']}{times}")
-
-
-def _resolution(text: str) -> tuple[int, int]:
-    """Parses 640x480."""
-    width, _, height = text.partition("x")
-    if not (width.isdecimal() and height.isdecimal() and int(width) and int(height)):
-        raise argparse.ArgumentTypeError(f"{text!r} is not of the form WxH, such as 640x480")
-    return int(width), int(height)
 
 
 def _check_writable(path: Path) -> None:

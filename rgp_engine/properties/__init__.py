@@ -1,4 +1,4 @@
-"""Everything the user can set, as property groups under `scene.rgp` and `view_layer.rgp`.
+"""Everything the user can set, as property groups under `scene.rgp` and `view_layer.rgp`; and what a list needs.
 
 Names, defaults and ranges of the scene's groups are those of the core's settings; a test compares both sides.
 """
@@ -8,6 +8,7 @@ Names, defaults and ranges of the scene's groups are those of the core's setting
 
 import bpy
 
+from .accuracy import RGPAccuracyList, RGPAccuracyRow
 from .film import RGPFilmSettings
 from .gather import RGPGatherSettings
 from .photon_pass import RGPPhotonPassSettings
@@ -38,6 +39,8 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         RGPRenderSettings,
         RGPSceneSettings,
         RGPViewLayerSettings,
+        RGPAccuracyRow,
+        RGPAccuracyList,
     )
 )
 
@@ -47,10 +50,12 @@ def register() -> None:
     _register_classes()
     bpy.types.Scene.rgp = bpy.props.PointerProperty(type=RGPSceneSettings)
     bpy.types.ViewLayer.rgp = bpy.props.PointerProperty(type=RGPViewLayerSettings)
+    bpy.types.WindowManager.rgp_accuracy = bpy.props.PointerProperty(type=RGPAccuracyList)
 
 
 def unregister() -> None:
     """Takes the settings away again; files keep the values."""
+    del bpy.types.WindowManager.rgp_accuracy
     del bpy.types.ViewLayer.rgp
     del bpy.types.Scene.rgp
     _unregister_classes()

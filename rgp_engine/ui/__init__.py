@@ -2,11 +2,12 @@
 
 import bpy
 
-from . import blender_panels, light, material, problems, render, scene_parts
+from . import accuracy, blender_panels, light, material, problems, render, scene_parts
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
     (
         *render.CLASSES,
+        *accuracy.CLASSES,
         *problems.CLASSES,
         *light.CLASSES,
         *material.CLASSES,

@@ -6,9 +6,12 @@ import bpy
 import pytest
 
 from rgp_engine import report, ui
+from rgp_engine.accuracy import background
 from rgp_engine.report import Outcome, Problem
-from rgp_engine.ui import light, material, problems, render, scene_parts
+from rgp_engine.ui import accuracy, light, material, problems, render, scene_parts
 from tests.blender import build
+
+MODULES = (accuracy, light, material, problems, render, scene_parts)
 
 
 class Layout:
@@ -22,6 +25,10 @@ class Layout:
         self.texts.append(text if text is not None else b_data.bl_rna.properties[name].name)
 
     def label(self, text="", **_):
+        self.texts.append(text)
+
+    def progress(self, text="", factor=0.0, **_):
+        assert 0.0 <= factor <= 1.0
         self.texts.append(text)
 
     def operator(self, name, **_):
@@ -140,14 +147,47 @@ def test_problems_and_statistics(scene, monkeypatch):
     assert "There is no camera." in draw(problems.RGP_PT_problems)
 
 
+def test_effects_of_the_last_render(scene, monkeypatch):
+    monkeypatch.setattr(report, "_last", None)
+    assert draw(problems.RGP_PT_effects) is None
+    report.publish(Outcome(error="There is no camera."))
+    assert draw(problems.RGP_PT_effects) is None
+    direct = {"name": "direct light", "called_for": True, "because": "lamp 'Sun'", "seconds": 1.5}
+    glossy = {"name": "indirect glossy", "called_for": True, "because": "it shines", "seconds": 0.5}
+    caustics = {"name": "caustics", "called_for": False, "because": "nothing asks", "seconds": 0.0}
+    report.publish(
+        Outcome(stats={"seconds": {}, "effects": [caustics, direct, {**glossy, "bytes": 3 << 19}]})
+    )
+    assert draw(problems.RGP_PT_effects) == [
+        "Direct light", "1.50 s", "lamp 'Sun'",
+        "Indirect glossy", "0.50 s", "", "1.5 MiB", "it shines",
+        "Caustics: not called for",
+    ]  # fmt: skip
+
+
+def test_error_of_the_last_render(scene, monkeypatch):
+    monkeypatch.setattr(background, "_last", None)
+    shown = {"scene": scene, "window_manager": bpy.context.window_manager}
+    report.publish(Outcome(stats={"seconds": {"total": 12.34}, "error": None}))
+    assert draw(accuracy.RGP_PT_accuracy, **shown) == []
+    report.publish(
+        Outcome(
+            stats={
+                "seconds": {"total": 12.34},
+                "error": {"rms_clipped": 0.8123, "rms_mean": 3.0, "rms_peak": 0.1},
+            }
+        )
+    )
+    assert draw(accuracy.RGP_PT_accuracy, **shown) == ["Last render: 0.81 % in 12.3 s"]
+
+
 def test_panels_are_hidden_for_other_engines(scene):
     things = dict.fromkeys(("active_object", "object", "light", "material", "world"), None)
-    for module in (render, problems, light, material, scene_parts):
-        for cls in module.CLASSES:
-            assert not cls.poll(SimpleNamespace(engine="CYCLES", **things))
+    for cls in (cls for module in MODULES for cls in module.CLASSES if issubclass(cls, bpy.types.Panel)):
+        assert not cls.poll(SimpleNamespace(engine="CYCLES", **things))
 
 
 def test_every_panel_is_registered():
-    classes = [cls for module in (render, problems, light, material, scene_parts) for cls in module.CLASSES]
+    classes = [cls for module in MODULES for cls in module.CLASSES]
     assert all(cls.is_registered for cls in classes)
     assert ui.register is not None

@@ -23,12 +23,6 @@ FACTOR = 1.5
 TRUTH = ("photon_pass.photon_count=4000000", "gather.rays=1024", "gather.camera_samples=256")
 
 
-@pytest.fixture(autouse=True)
-def _registered_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The command line registers the engine, which in this process is done already."""
-    monkeypatch.setattr("rgp_engine.cli.render.register", lambda: None)
-
-
 def render(scene: str, folder: Path, seed: int, *settings: str) -> tuple[Any, dict[str, Any]]:
     """The combined picture (height, width, 3) and the statistics."""
     picture, stats = folder / "picture.exr", folder / "stats.json"

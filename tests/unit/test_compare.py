@@ -40,6 +40,17 @@ def test_constant_offset():
     assert found.relmse == pytest.approx(relmse, rel=1e-5)
 
 
+def test_clipped_pictures_do_not_know_lamps():
+    """Nine pixels of 1 and a lamp of 91: the mean is 10, the lamp is clipped at 80."""
+    reference = constant(1.0, 2, 5)
+    reference[1, 2] = 91.0
+    picture = reference + np.float32(0.5)
+    picture[1, 2] = 1000.0
+    found = compare_pictures(picture, reference)
+    assert found.rms_clipped == pytest.approx(100 * np.sqrt(0.9 * 0.25) / 8.9, rel=1e-5)
+    assert found.rms_mean > 1000.0
+
+
 def test_errors_that_cancel_are_no_bias():
     reference = constant(1.0)
     picture = reference.copy()
@@ -144,6 +155,7 @@ def test_command(tmp_path):
     assert [line.split()[0] for line in result.stdout.splitlines()] == [
         "rms_peak",
         "rms_mean",
+        "rms_clipped",
         "relmse",
         "bias",
         "nonfinite",

@@ -53,6 +53,8 @@ def test_effects():
         ("Caustics", "not called for: nothing in the scene asks for it"),
     ]
     assert effect_rows({}) == []
+    with_memory = {"effects": [{**CORE["effects"][0], "bytes": 3 << 20}]}
+    assert effect_rows(with_memory) == [("Direct light", "2.50 s, 3.0 MiB: lamp 'Lamp'")]
 
 
 @pytest.mark.parametrize(
