@@ -16,8 +16,9 @@ RUST_RANKS = {
     **dict.fromkeys(("bsdf", "light"), 2),
     **dict.fromkeys(("accel", "effects_plan"), 3),
     "lit_scene": 4,
-    **dict.fromkeys(("photon_pass", "gather", "baseline"), 5),
-    "render": 6,
+    "estimator": 5,
+    **dict.fromkeys(("photon_pass", "gather", "baseline"), 6),
+    "render": 7,
 }
 # The lowest rank is the one exception: plain tools that may use each other.
 FREE_RANK = 0

@@ -79,3 +79,28 @@ class RGPGatherSettings(bpy.types.PropertyGroup):
         min=1,
         max=1000,
     )
+    # For measurements, by `--set`: no panel shows these two.
+    estimator: bpy.props.EnumProperty(
+        name="Estimator",
+        description="Where gather rays read the light: the pyramid, or another method to measure it against",
+        items=(
+            ("pyramid", "Pyramid", "The Radiance Grid Pyramid", 0),
+            ("pyramid_2006", "Pyramid as Published", "The pyramid exactly as the paper has it", 1),
+            ("photon_map", "Photon Map", "The nearest photons, looked up at every hit", 2),
+            ("precomputed_irradiance", "Precomputed Irradiance", "Irradiance at every fourth photon", 3),
+            ("uniform_grid", "Uniform Grid", "Cells, added until they hold enough photons", 4),
+            ("reverse_photon_map", "Reverse Photon Map", "Photons that look for the hits near them", 5),
+            ("path", "Path", "Nothing stored: every path is followed to its end", 6),
+        ),
+        default="pyramid",
+        options={"HIDDEN"},
+    )
+    photons_per_estimate: bpy.props.IntProperty(
+        name="Photons per Estimate",
+        description="Photons an estimate reaches to, where photons are read one by one; "
+        "the pyramid does not use it",
+        default=50,
+        min=2,
+        max=10_000,
+        options={"HIDDEN"},
+    )

@@ -2,10 +2,12 @@
 #![forbid(unsafe_code)]
 
 pub mod accel;
+pub mod baseline;
 pub mod bsdf;
 pub mod color;
 pub mod effects_plan;
 pub mod error;
+pub mod estimator;
 pub mod film;
 pub mod gather;
 pub mod light;

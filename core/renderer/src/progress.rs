@@ -17,6 +17,8 @@ pub enum Stage {
     PhotonPass,
     /// Merging the pyramid's levels.
     Pyramid,
+    /// Building what stands in for the pyramid.
+    Baseline,
     /// Final gathering.
     Gather,
 }
@@ -30,6 +32,7 @@ impl Stage {
             Self::Layout => "Measuring surfaces",
             Self::PhotonPass => "Tracing photons",
             Self::Pyramid => "Building pyramid",
+            Self::Baseline => "Building baseline",
             Self::Gather => "Gathering",
         }
     }

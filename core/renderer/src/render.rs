@@ -1,26 +1,30 @@
 //! The order of everything.
 
+mod baselines;
+
 use std::path::Path;
 use std::time::Instant;
 
 use glam::{DVec3, Vec3};
 
 use crate::accel::Accel;
+use crate::baseline;
 use crate::bsdf::{LobeSet, MaterialTable, PreparedMaterial};
 use crate::effects_plan::EffectsPlan;
 use crate::error::RenderError;
+use crate::estimator::{Estimator, PhotonSink};
 use crate::film::Film;
-use crate::gather::{self, Gatherer, Stop, TraceFloor};
+use crate::gather::{self, Gatherer, PyramidLookup, Stop, TraceFloor};
 use crate::light::Lights;
 use crate::lit_scene::LitScene;
-use crate::photon_pass;
+use crate::photon_pass::{self, PyramidDeposits};
 use crate::progress::{Progress, Stage};
 use crate::pyramid::{
     Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, SETS, SurfaceTriangle,
 };
 use crate::scene::Scene;
-use crate::settings::{RenderSettings, parse_bins};
-use crate::stats::Stats;
+use crate::settings::{EstimatorKind, RenderSettings, parse_bins};
+use crate::stats::{EstimatorStats, Stats};
 
 /// Renders `scene` into `film`, with Embree from the file `library`. `stats` grows as passes end, so that it is worth
 /// reading after a cancel too.
@@ -57,11 +61,7 @@ pub fn trace_floor(
     let film = Film::new(width, height, &settings.film);
     threads(settings)?.install(|| {
         let lit = light(scene, settings, library, &progress)?;
-        let layout = layout(&lit, settings, &progress)?;
-        let dark = Accumulator::new(&layout, 0.0, None);
-        let pyramid = Pyramid::build(dark, &layout, settings.pyramid.photons_per_cell, |_, _| true, || true)
-            .ok_or(RenderError::Cancelled)?;
-        Ok(gather::trace_floor(&Gatherer::new(&lit, pyramid.view(0), settings), &film))
+        Ok(gather::trace_floor(&Gatherer::new(&lit, &baseline::Path, settings), &film))
     })
 }
 
@@ -84,56 +84,96 @@ fn passes(
     stats.seconds.accel = clock.elapsed().as_secs_f64();
     stats.effects = lit.plan.report(&stats.seconds);
 
-    progress.enter(Stage::Layout);
-    let clock = Instant::now();
-    let layout = layout(&lit, settings, progress)?;
-    stats.pyramid.cell_size =
-        f64::from(layout.grid.levels[layout.grid.finest()].cell_size) / scene.space.scale;
-    stats.seconds.pyramid = clock.elapsed().as_secs_f64();
-    progress.check()?;
+    let work = Work { lit: &lit, settings, film, progress };
+    match settings.gather.estimator {
+        EstimatorKind::Pyramid => work.pyramid(stats),
+        EstimatorKind::Pyramid2006 => work.pyramid_2006(stats),
+        EstimatorKind::PhotonMap => work.photon_map(stats),
+        EstimatorKind::PrecomputedIrradiance => work.precomputed_irradiance(stats),
+        EstimatorKind::UniformGrid => work.uniform_grid(stats),
+        EstimatorKind::ReversePhotonMap => work.reverse_photon_map(stats),
+        EstimatorKind::Path => work.path(stats),
+    }
+}
 
-    progress.enter(Stage::PhotonPass);
-    let clock = Instant::now();
-    let [elevation, azimuth] = parse_bins(&settings.pyramid.bins)?;
-    let bins = lit.plan.direction_bins.then_some(DirectionBins { elevation, azimuth });
-    // A single pass has nothing to be compared with and reads all photons.
-    let sets = SETS.min(settings.gather.camera_samples as usize);
-    let accumulator = Accumulator::new(&layout, lit.lights.total_flux().max_channel(), bins);
-    let photons =
-        photon_pass::run(&lit, &settings.photon_pass, settings.render.seed, sets, &accumulator, progress)?;
-    stats.photons.emitted = photons.emitted;
-    stats.photons.deposited = accumulator.deposited();
-    stats.rays.photon = photons.segments;
-    stats.seconds.photon_pass = clock.elapsed().as_secs_f64();
+/// The passes over a scene that is ready to be traced.
+struct Work<'a> {
+    lit: &'a LitScene<'a>,
+    settings: &'a RenderSettings,
+    film: &'a Film,
+    progress: &'a Progress,
+}
 
-    progress.enter(Stage::Pyramid);
-    let clock = Instant::now();
-    stats.pyramid.build_bytes = layout.bytes() + accumulator.bytes();
-    let visible = |p, q| lit.accel.sees(p, q);
-    let pyramid = Pyramid::build(accumulator, &layout, settings.pyramid.photons_per_cell, visible, || {
-        !progress.is_cancelled()
-    })
-    .ok_or(RenderError::Cancelled)?;
-    drop(layout);
-    stats.pyramid.levels = pyramid.level_count();
-    stats.pyramid.cells = pyramid.cell_count();
-    stats.pyramid.bytes = pyramid.bytes();
-    stats.pyramid.glossy_cells = pyramid.glossy_cell_count();
-    stats.pyramid.bins = bins.map_or(0, DirectionBins::count);
-    stats.seconds.pyramid += clock.elapsed().as_secs_f64();
+impl Work<'_> {
+    /// Photons into the pyramid, and the picture from it.
+    fn pyramid(&self, stats: &mut Stats) -> Result<(), RenderError> {
+        let Work { lit, settings, progress, .. } = *self;
+        progress.enter(Stage::Layout);
+        let clock = Instant::now();
+        let layout = layout(lit, settings, progress)?;
+        stats.pyramid.cell_size =
+            f64::from(layout.grid.levels[layout.grid.finest()].cell_size) / lit.accel.scene().space.scale;
+        stats.seconds.pyramid = clock.elapsed().as_secs_f64();
+        progress.check()?;
 
-    progress.enter(Stage::Gather);
-    let clock = Instant::now();
-    let gatherers = std::array::from_fn(|set| Gatherer::new(&lit, pyramid.view(set), settings));
-    let stop = Stop::new(&settings.gather, progress.elapsed());
-    let gathered = gather::run(&gatherers, film, stop, progress);
-    stats.error = film.picture_error();
-    stats.seconds.gather = clock.elapsed().as_secs_f64();
-    stats.effects = lit.plan.report(&stats.seconds);
-    let gathered = gathered?;
-    stats.rays += gathered.rays;
-    stats.stopped_by = gathered.stopped_by;
-    Ok(())
+        let [elevation, azimuth] = parse_bins(&settings.pyramid.bins)?;
+        let bins = lit.plan.direction_bins.then_some(DirectionBins { elevation, azimuth });
+        // A single pass has nothing to be compared with and reads all photons.
+        let sets = SETS.min(settings.gather.camera_samples as usize);
+        let accumulator = Accumulator::new(&layout, lit.lights.total_flux().max_channel(), bins);
+        self.photons(&PyramidDeposits::new(lit, &accumulator), sets, stats)?;
+        stats.photons.deposited = accumulator.deposited();
+
+        progress.enter(Stage::Pyramid);
+        let clock = Instant::now();
+        stats.pyramid.build_bytes = layout.bytes() + accumulator.bytes();
+        let visible = |p, q| lit.accel.sees(p, q);
+        let pyramid =
+            Pyramid::build(accumulator, &layout, settings.pyramid.photons_per_cell, visible, || {
+                !progress.is_cancelled()
+            })
+            .ok_or(RenderError::Cancelled)?;
+        drop(layout);
+        stats.pyramid.levels = pyramid.level_count();
+        stats.pyramid.cells = pyramid.cell_count();
+        stats.pyramid.bytes = pyramid.bytes();
+        stats.pyramid.glossy_cells = pyramid.glossy_cell_count();
+        stats.pyramid.bins = bins.map_or(0, DirectionBins::count);
+        stats.seconds.pyramid += clock.elapsed().as_secs_f64();
+        stats.estimator =
+            EstimatorStats { name: "pyramid", bytes: stats.pyramid.bytes, seconds: stats.seconds.pyramid };
+        let lookup = |set| PyramidLookup::new(lit, pyramid.view(set), settings.gather.retrace_distance);
+        let lookups: [_; SETS] = std::array::from_fn(lookup);
+        self.gather(lookups.each_ref(), stats)
+    }
+
+    /// Traces the photons, dealt into `sets` sets.
+    fn photons(&self, sink: &impl PhotonSink, sets: usize, stats: &mut Stats) -> Result<(), RenderError> {
+        self.progress.enter(Stage::PhotonPass);
+        let clock = Instant::now();
+        let (photon_pass, seed) = (&self.settings.photon_pass, self.settings.render.seed);
+        let counts = photon_pass::run(self.lit, photon_pass, seed, sets, sink, self.progress)?;
+        stats.photons.emitted = counts.emitted;
+        stats.rays.photon = counts.segments;
+        stats.seconds.photon_pass = clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Makes the picture; even and odd passes ask one estimator each.
+    fn gather<E: Estimator>(&self, estimators: [&E; SETS], stats: &mut Stats) -> Result<(), RenderError> {
+        self.progress.enter(Stage::Gather);
+        let clock = Instant::now();
+        let gatherers = estimators.map(|estimator| Gatherer::new(self.lit, estimator, self.settings));
+        let stop = Stop::new(&self.settings.gather, self.progress.elapsed());
+        let gathered = gather::run(&gatherers, self.film, stop, self.progress);
+        stats.error = self.film.picture_error();
+        stats.seconds.gather = clock.elapsed().as_secs_f64();
+        stats.effects = self.lit.plan.report(&stats.seconds);
+        let gathered = gathered?;
+        stats.rays += gathered.rays;
+        stats.stopped_by = gathered.stopped_by;
+        Ok(())
+    }
 }
 
 /// Materials, lights, tree and plan.

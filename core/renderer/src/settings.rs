@@ -38,6 +38,27 @@ pub enum GatherSampling {
     Uniform,
 }
 
+/// What answers for the light at the ends of gather rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EstimatorKind {
+    /// The product's own.
+    Pyramid,
+    /// The pyramid as the paper has it.
+    #[serde(rename = "pyramid_2006")]
+    Pyramid2006,
+    /// Nearest photons.
+    PhotonMap,
+    /// Irradiance at every fourth photon.
+    PrecomputedIrradiance,
+    /// Flux and photon counts of cells.
+    UniformGrid,
+    /// Photons look for hits.
+    ReversePhotonMap,
+    /// Paths to their end.
+    Path,
+}
+
 /// Knobs of the final gather.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -58,6 +79,10 @@ pub struct GatherSettings {
     pub retrace_distance: f32,
     /// Mirror, glass and retrace bounces.
     pub max_depth: u32,
+    /// What answers for the light at the ends of gather rays.
+    pub estimator: EstimatorKind,
+    /// Photons that an estimate of the photon map, or of what is built on it, reaches to.
+    pub photons_per_estimate: u32,
 }
 
 /// Pixel filter.
@@ -131,6 +156,8 @@ impl Default for GatherSettings {
             sampling: GatherSampling::Cosine,
             retrace_distance: 1.732_050_8,
             max_depth: 32,
+            estimator: EstimatorKind::Pyramid,
+            photons_per_estimate: 50,
         }
     }
 }
@@ -198,6 +225,17 @@ const fn int(minimum: u64, maximum: u64) -> Kind {
     Kind::Int { minimum, maximum }
 }
 
+/// Words of [`EstimatorKind`].
+const ESTIMATORS: &[&str] = &[
+    "pyramid",
+    "pyramid_2006",
+    "photon_map",
+    "precomputed_irradiance",
+    "uniform_grid",
+    "reverse_photon_map",
+    "path",
+];
+
 /// Every knob there is. Defaults are those of [`RenderSettings::default`].
 #[rustfmt::skip]
 pub const KNOBS: &[Knob] = &[
@@ -215,6 +253,8 @@ pub const KNOBS: &[Knob] = &[
     knob("gather", "sampling", Kind::Enum { choices: &["cosine", "uniform"] }, "", "Gather rays follow the surface's reflection (cosine), or are uniform over the hemisphere as in the paper"),
     knob("gather", "retrace_distance", Kind::Float { minimum: 0.0, maximum: 8.0 }, "cells", "Gather rays shorter than this many cells are continued one bounce, which keeps corners right; 0 never"),
     knob("gather", "max_depth", int(1, 1000), "bounces", "Mirror, glass and short-ray bounces after which a path ends"),
+    knob("gather", "estimator", Kind::Enum { choices: ESTIMATORS }, "", "Where gather rays read the light: the pyramid, or another method to measure it against"),
+    knob("gather", "photons_per_estimate", int(2, 10_000), "photons", "Photons an estimate reaches to, where photons are read one by one; the pyramid does not use it"),
     knob("film", "filter", Kind::Enum { choices: &["blackman_harris", "box"] }, "", "Pixel filter"),
     knob("film", "filter_width", Kind::Float { minimum: 0.1, maximum: 10.0 }, "pixels", "Width of the pixel filter as in Cycles: a box is that wide, Blackman-Harris reaches that far to either side"),
     knob("film", "tile_size", int(4, 4096), "pixels", "Edge of the tiles the picture is cut into; changes nothing in the picture"),

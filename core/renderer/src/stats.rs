@@ -30,7 +30,7 @@ pub struct RayCounts {
     pub shadow: u64,
     /// Photon segments.
     pub photon: u64,
-    /// Gather rays too short for the cell they would read.
+    /// Ends of gather rays that were followed instead of read: too short for the cell they would read.
     pub retraced: u64,
 }
 
@@ -49,7 +49,7 @@ impl AddAssign for RayCounts {
 pub struct PhotonCounts {
     /// Started at a light.
     pub emitted: u64,
-    /// Landings added to the pyramid.
+    /// Landings that were stored.
     pub deposited: u64,
 }
 
@@ -70,6 +70,17 @@ pub struct PyramidCounts {
     pub bytes: usize,
     /// Most memory it took while it was built.
     pub build_bytes: usize,
+}
+
+/// What answered for the light at the ends of gather rays.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct EstimatorStats {
+    /// As in the setting `gather.estimator`.
+    pub name: &'static str,
+    /// Memory while it was asked.
+    pub bytes: usize,
+    /// Wall seconds to build it, the photons aside.
+    pub seconds: f64,
 }
 
 /// One line of the effects plan.
@@ -129,6 +140,8 @@ pub struct Stats {
     pub photons: PhotonCounts,
     /// Pyramid.
     pub pyramid: PyramidCounts,
+    /// What the gather asked.
+    pub estimator: EstimatorStats,
     /// Effects plan.
     pub effects: Vec<EffectStats>,
     /// Pixels that came out NaN or infinite and were set to black.

@@ -3,11 +3,12 @@
 
 use std::f32::consts::PI;
 
-use glam::{DVec2, Vec3};
+use glam::DVec2;
 
 use crate::accel::{Hit, LANES, Packet, Ray};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
+use crate::estimator::{Estimator, Footprint};
 use crate::film::{BLOCK, PixelSample, TileRect};
 use crate::lit_scene::ray_kind;
 use crate::sampling::{PixelSeeds, Rng, hash};
@@ -17,14 +18,15 @@ use crate::stats::RayCounts;
 
 use super::Gatherer;
 use super::camera::camera_ray;
+use super::deferred::{Deferred, Target, Traces};
 use super::direct::{ShadowRay, Shares, lambert_shadow_ray, shadow_ray, transmittance};
 use super::lambert::LambertLanes;
-use super::path::{Footprint, Sampled};
+use super::path::Sampled;
 use super::vertex::{GatherRay, Vertex, rotate};
 
 /// Work on one block of pixels.
-pub(super) struct Block<'a, 'g> {
-    gatherer: &'g Gatherer<'a>,
+pub(super) struct Block<'a, 'g, E: Estimator> {
+    gatherer: &'g Gatherer<'a, E>,
     /// Number of the camera sample.
     sample: u32,
     keys: [u64; LANES],
@@ -38,12 +40,12 @@ pub(super) struct Block<'a, 'g> {
     packet: Packet,
     /// Of the packet: gather rays that did not start on a constant Lambert surface.
     others: [Option<GatherRay>; LANES],
-    rays: RayCounts,
+    traces: Traces<E::Place>,
 }
 
-impl<'a, 'g> Block<'a, 'g> {
+impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     /// An idle block.
-    pub(super) fn new(gatherer: &'g Gatherer<'a>, sample: u32) -> Self {
+    pub(super) fn new(gatherer: &'g Gatherer<'a, E>, sample: u32) -> Self {
         Self {
             gatherer,
             sample,
@@ -55,28 +57,34 @@ impl<'a, 'g> Block<'a, 'g> {
             samples: [PixelSample::default(); LANES],
             packet: Packet::default(),
             others: [None; LANES],
-            rays: RayCounts::default(),
+            traces: Traces::default(),
         }
     }
 
-    /// Rays traced so far.
-    pub(super) const fn rays(&self) -> RayCounts {
-        self.rays
+    /// Rays traced so far, and look-ups that wait for their answer.
+    pub(super) fn finish(self) -> (RayCounts, Vec<Deferred<E::Place>>) {
+        (self.traces.rays, self.traces.deferred)
     }
 
     /// Computes the pixels of the block whose lowest corner is (x, y) and writes those inside `tile` to `out`.
     #[inline(always)]
     pub(super) fn run(&mut self, x: u32, y: u32, tile: TileRect, out: &mut [PixelSample]) {
+        let deferred = self.traces.deferred.len();
         self.start(x, y);
         if self.lambert.any() || self.has_vertices {
             self.light();
             self.gather();
         }
+        let pixel = |px: u32, py: u32| ((py - tile.y) * tile.width + px - tile.x) as usize;
         for lane in 0..LANES as u32 {
             let (px, py) = (x + lane % BLOCK, y + lane / BLOCK);
             if px < tile.x + tile.width && py < tile.y + tile.height {
-                out[((py - tile.y) * tile.width + px - tile.x) as usize] = self.samples[lane as usize];
+                out[pixel(px, py)] = self.samples[lane as usize];
             }
+        }
+        for deferred in &mut self.traces.deferred[deferred..] {
+            let lane = deferred.pixel as u32;
+            deferred.pixel = pixel(x + lane % BLOCK, y + lane / BLOCK);
         }
     }
 
@@ -112,7 +120,7 @@ impl<'a, 'g> Block<'a, 'g> {
         g.lit.accel.intersect_packet(&mut self.packet);
         for lane in 0..LANES {
             if self.packet.is_set(lane) {
-                self.rays.camera += 1;
+                self.traces.rays.camera += 1;
                 let (ray, hit) = (self.packet.ray(lane), self.packet.hit(lane));
                 if !self.start_lambert(lane, &ray, hit) {
                     self.follow_camera(lane, ray, hit);
@@ -162,7 +170,7 @@ impl<'a, 'g> Block<'a, 'g> {
             throughput *= sample.weight;
             sampled.kind = ray_kind(&sample);
             ray = Ray::leaving(surface.p, surface.ng, sample.wi, sampled.kind | g.lit.accel.lamp_bit());
-            self.rays.camera += 1;
+            self.traces.rays.camera += 1;
         }
     }
 
@@ -183,7 +191,7 @@ impl<'a, 'g> Block<'a, 'g> {
                 let traced = shadows[lane].as_ref().filter(|s| s.casts_shadow && !g.lit.plan.transparency);
                 if let Some(shadow) = traced {
                     self.packet.set(lane, &shadow.ray, shadow.t_far);
-                    self.rays.shadow += 1;
+                    self.traces.rays.shadow += 1;
                 }
             }
             if !self.packet.is_empty() {
@@ -192,7 +200,7 @@ impl<'a, 'g> Block<'a, 'g> {
             for (lane, shadow) in shadows.iter().enumerate() {
                 let Some(shadow) = shadow else { continue };
                 let seen = if !self.packet.is_set(lane) {
-                    transmittance(g.lit, shadow, &mut self.rays.shadow)
+                    transmittance(g.lit, shadow, &mut self.traces.rays.shadow)
                 } else if self.packet.is_free(lane) {
                     Rgb::WHITE
                 } else {
@@ -269,36 +277,43 @@ impl<'a, 'g> Block<'a, 'g> {
         }
     }
 
-    /// Adds what the gather rays of a packet bring: those that end on constant Lambert surfaces are read from the pyramid
-    /// together, the others followed one by one.
+    /// Adds what the gather rays of a packet bring: those that end on constant Lambert surfaces are read together, the
+    /// others followed one by one.
     #[inline(always)]
     fn receive(&mut self, pdfs: &[f32; LANES], index: u32) {
         let g = self.gatherer;
-        let (mut p, mut class, mut level) = ([Vec3::ZERO; LANES], [0; LANES], [0; LANES]);
+        let mut places = [E::Place::default(); LANES];
         let mut weight = [Rgb::BLACK; LANES];
         let mut read = [false; LANES];
         for lane in 0..LANES {
             if !self.packet.is_set(lane) {
                 continue;
             }
-            self.rays.gather += 1;
+            self.traces.rays.gather += 1;
             let ray = self.others[lane]
                 .unwrap_or_else(|| GatherRay::diffuse(self.lambert.weight[lane], Some(pdfs[lane])));
             let hit = self.packet.hit(lane);
             let solid_angle = ray.pdf.map_or(0.0, |pdf| (g.per_ray / pdf).min(g.widest));
-            match hit.filter(|_| !ray.sharp).and_then(|hit| g.readable(&hit, solid_angle)) {
+            let readable = hit.filter(|_| !ray.sharp);
+            match readable.and_then(|hit| g.readable(&self.packet.ray(lane), &hit, solid_angle)) {
                 Some(readable) => {
-                    (p[lane], class[lane]) = readable.place(&self.packet.ray(lane), &g.pyramid);
-                    level[lane] = readable.level;
-                    weight[lane] = ray.weight * readable.albedo_over_pi;
+                    places[lane] = readable.place;
+                    weight[lane] = ray.weight * readable.reflectance;
                     read[lane] = true;
                 }
                 None => self.receive_other(lane, &ray, hit, solid_angle, index),
             }
         }
-        let irradiance = g.pyramid.irradiances(&p, &class, &level, &read);
+        if E::DEFERS {
+            for lane in (0..LANES).filter(|&lane| read[lane]) {
+                let (place, weight) = (places[lane], weight[lane]);
+                self.traces.deferred.push(Deferred { place, weight, pixel: lane });
+            }
+            return;
+        }
+        let found = g.estimator.read_all(&places, &read);
         for lane in 0..LANES {
-            self.samples[lane].indirect += weight[lane] * irradiance[lane];
+            self.samples[lane].indirect += weight[lane] * found[lane];
         }
     }
 
@@ -321,8 +336,9 @@ impl<'a, 'g> Block<'a, 'g> {
         sample.direct += weight * met.light * g.direct_share;
         if let Some(surface) = met.surface {
             let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };
-            sample.indirect +=
-                weight * met.through * g.outgoing(surface, footprint, &mut rng, &mut self.rays);
+            let weight = weight * met.through;
+            let target = Target { traces: &mut self.traces, lane, weight };
+            sample.indirect += weight * g.outgoing(surface, footprint, &mut rng, target);
         }
     }
 }

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use crate::accel::Ray;
+use crate::estimator::Estimator;
 use crate::film::{BLOCK, Film};
 
 use super::Gatherer;
@@ -22,7 +23,7 @@ pub struct TraceFloor {
 
 /// Traces every gather ray of the picture one by one. Making the rays is not counted.
 #[must_use]
-pub fn trace_floor(gatherer: &Gatherer<'_>, film: &Film) -> TraceFloor {
+pub fn trace_floor<E: Estimator>(gatherer: &Gatherer<'_, E>, film: &Film) -> TraceFloor {
     let busy = Mutex::new((0_u64, Duration::ZERO));
     for sample in 0..gatherer.camera_samples {
         film.tiles().par_iter().for_each(|tile| {

@@ -1,8 +1,8 @@
-//! The final gather: the picture, from the pyramid.
+//! The final gather: the picture, from the pyramid or what stands in for it.
 //!
 //! For each pixel, `camera_samples` points x are seen; from each, gather rays leave with density p and meet points y. The
 //! radiance towards the camera is the light emitted and arriving directly at x, plus (paper, eq. 2, 3)
-//! `1/N Σ f(x) cos / p · L(y)`, where L(y) is read from the pyramid over the footprint Ω r² with Ω = 1 / (N p).
+//! `1/N Σ f(x) cos / p · L(y)`, where L(y) is read over the footprint Ω r² with Ω = 1 / (N p).
 //!
 //! One pass over the picture is one camera sample of every pixel; passes are independent and their mean is the picture.
 //! Even and odd passes read different photons: how much they differ says how far the picture is from its limit.
@@ -10,10 +10,12 @@
 mod block;
 mod camera;
 mod convergence;
+mod deferred;
 mod direct;
 mod floor;
 mod lambert;
 mod path;
+mod pyramid_lookup;
 mod readable;
 mod stop;
 mod vertex;
@@ -29,10 +31,11 @@ use crate::accel::Ray;
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::error::RenderError;
+use crate::estimator::Estimator;
 use crate::film::{BLOCK, Film, PixelSample};
 use crate::lit_scene::{LitScene, Surface, ray_kind};
 use crate::progress::Progress;
-use crate::pyramid::{SETS, View};
+use crate::pyramid::SETS;
 use crate::sampling::{Rng, StratifiedSet, hash};
 use crate::scene::visibility;
 use crate::settings::{GatherSampling, RenderSettings};
@@ -41,20 +44,21 @@ use crate::stats::{RayCounts, StoppedBy};
 use block::{Block, widest_stratum};
 use camera::camera_ray;
 use convergence::Convergence;
+use deferred::OpenTile;
 use direct::Shares;
 pub use floor::{TraceFloor, trace_floor};
+pub use pyramid_lookup::PyramidLookup;
 pub use stop::Stop;
 
 /// What every gather ray needs to know.
-pub struct Gatherer<'a> {
+pub struct Gatherer<'a, E> {
     lit: &'a LitScene<'a>,
-    pyramid: View<'a>,
+    estimator: &'a E,
     seed: u32,
     camera_samples: u32,
     light_samples: u32,
     rays: u32,
     max_depth: u32,
-    retrace_distance: f32,
     sampling: GatherSampling,
     camera_set: StratifiedSet,
     light_set: StratifiedSet,
@@ -73,10 +77,10 @@ pub struct Gatherer<'a> {
     plain: Vec<Option<Rgb>>,
 }
 
-impl<'a> Gatherer<'a> {
-    /// Prepares a gather over a finished pyramid, as one set of photons filled it.
+impl<'a, E: Estimator> Gatherer<'a, E> {
+    /// Prepares a gather whose rays are answered by `estimator`.
     #[must_use]
-    pub fn new(lit: &'a LitScene<'a>, pyramid: View<'a>, settings: &RenderSettings) -> Self {
+    pub fn new(lit: &'a LitScene<'a>, estimator: &'a E, settings: &RenderSettings) -> Self {
         let gather = &settings.gather;
         let seed = settings.render.seed;
         let set = |count: u32, salt: u64| StratifiedSet::new(count, hash(u64::from(seed), salt) as u32);
@@ -86,13 +90,12 @@ impl<'a> Gatherer<'a> {
         });
         Self {
             lit,
-            pyramid,
+            estimator,
             seed,
             camera_samples: gather.camera_samples,
             light_samples: gather.light_samples,
             rays: gather.rays,
-            max_depth: gather.max_depth,
-            retrace_distance: gather.retrace_distance,
+            max_depth: gather.max_depth.max(E::LEAST_DEPTH),
             sampling: gather.sampling,
             camera_set: set(gather.camera_samples, 1),
             light_set: set(gather.camera_samples * gather.light_samples, 2),
@@ -133,13 +136,13 @@ pub struct Gathered {
     pub stopped_by: StoppedBy,
 }
 
-/// Renders passes into `film` until `stop` is content. The passes read the sets of photons by turns, and fill the film's
-/// halves by turns.
+/// Renders passes into `film` until `stop` is content. The passes are gathered by one and the other of `gatherers` (which
+/// read different photons) by turns, and fill the film's halves by turns.
 ///
 /// # Errors
 /// [`RenderError::Cancelled`]; what is finished is in the film.
-pub fn run(
-    gatherers: &[Gatherer<'_>; SETS],
+pub fn run<E: Estimator>(
+    gatherers: &[Gatherer<'_, E>; SETS],
     film: &Film,
     stop: Stop,
     progress: &Progress,
@@ -155,13 +158,14 @@ pub fn run(
         let half = pass as usize % SETS;
         let gatherer = &gatherers[half];
         let sample = gatherer.sample_of_pass(pass);
-        let finished = (0..tiles).into_par_iter().try_for_each(|index| {
-            let counts = instructions.dispatch(TileWork { gatherer, sample, film, index, progress })?;
+        let finished = gatherer.pass_in_batches(sample, film, |index| {
+            let (counts, open) =
+                instructions.dispatch(TileWork { gatherer, sample, film, index, progress })?;
             *rays.lock().unwrap_or_else(PoisonError::into_inner) += counts;
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             let share = done as f64 / (tiles * passes as usize) as f64;
             progress.set_fraction(stop.fraction(share, progress.elapsed()));
-            Ok::<(), RenderError>(())
+            Ok(open)
         });
         film.finish_pass(gatherer.rays_of_sample(sample).len() as u32, half);
         finished?;
@@ -183,8 +187,8 @@ pub fn run(
 }
 
 /// A tile of a pass, for whichever vector instructions this processor has.
-struct TileWork<'w, 'a> {
-    gatherer: &'w Gatherer<'a>,
+struct TileWork<'w, 'a, E> {
+    gatherer: &'w Gatherer<'a, E>,
     /// Number of the camera sample.
     sample: u32,
     film: &'w Film,
@@ -192,8 +196,9 @@ struct TileWork<'w, 'a> {
     progress: &'w Progress,
 }
 
-impl pulp::NullaryFnOnce for TileWork<'_, '_> {
-    type Output = Result<RayCounts, RenderError>;
+impl<E: Estimator> pulp::NullaryFnOnce for TileWork<'_, '_, E> {
+    /// What was counted, and the tile itself where its light is not complete.
+    type Output = Result<(RayCounts, Option<OpenTile<E::Place>>), RenderError>;
 
     // What is inlined into this function, and only that, is compiled for the wider instructions.
     #[inline(always)]
@@ -207,8 +212,12 @@ impl pulp::NullaryFnOnce for TileWork<'_, '_> {
                 block.run(x, y, tile, &mut samples);
             }
         }
+        let (counts, deferred) = block.finish();
+        if E::DEFERS {
+            return Ok((counts, Some(OpenTile { index: self.index, samples, deferred })));
+        }
         self.film.take(self.index, samples);
-        Ok(block.rays())
+        Ok((counts, None))
     }
 }
 

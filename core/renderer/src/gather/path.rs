@@ -1,18 +1,20 @@
 //! Rays that are followed one by one: through transparent surfaces, off mirrors and glass, and on from gather hits that
-//! are too near to be read from the pyramid.
+//! cannot be read, such as those too near for the pyramid's cells.
 //!
-//! Path classes are a partition: at every vertex each lobe is either read from the pyramid or followed, never both.
+//! Path classes are a partition: at every vertex each lobe is either read or followed, never both.
 
 use glam::Vec3;
 
 use crate::accel::{Hit, Ray};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
+use crate::estimator::{Estimator, Footprint};
 use crate::lit_scene::{Surface, ray_kind};
 use crate::sampling::Rng;
 use crate::scene::visibility;
 
 use super::Gatherer;
+use super::deferred::Target;
 use super::direct::{Shares, shadow_ray, transmittance};
 use crate::stats::RayCounts;
 
@@ -52,18 +54,7 @@ pub(super) struct Met<'a> {
     pub(super) through: Rgb,
 }
 
-/// The solid angle a ray stands for, and how far it came.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Footprint {
-    /// Solid angle (sr); 0 reads the finest cells.
-    pub(super) solid_angle: f32,
-    /// Length so far (scene units).
-    pub(super) travelled: f32,
-    /// Mirror-like: what is seen must be shaded, not read, unless the footprint covers a cell.
-    pub(super) sharp: bool,
-}
-
-impl<'a> Gatherer<'a> {
+impl<'a, E: Estimator> Gatherer<'a, E> {
     /// Follows a ray to the surface it ends at. `first` is its first hit if that is known already.
     pub(super) fn meet(
         &self,
@@ -126,31 +117,34 @@ impl<'a> Gatherer<'a> {
         light
     }
 
-    /// Radiance leaving `surface` towards where the ray came from, without its emission: read from the pyramid where the
-    /// footprint allows, followed where not.
+    /// Radiance leaving `surface` towards where the ray came from, without its emission: read where the estimator allows,
+    /// followed where not. Look-ups that are deferred go to `target` instead.
     pub(super) fn outgoing(
         &self,
         surface: Surface<'a>,
         footprint: Footprint,
         rng: &mut Rng,
-        rays: &mut RayCounts,
+        mut target: Target<'_, E::Place>,
     ) -> Rgb {
         let mut radiance = Rgb::BLACK;
         let mut throughput = Rgb::WHITE;
         let (mut surface, mut footprint) = (surface, footprint);
         for depth in 0..self.max_depth {
-            let lobes = if self.too_short(&surface, footprint) {
-                rays.retraced += 1;
-                LobeSet::ALL
-            } else {
-                radiance += throughput * self.look_up(&surface, footprint, rng);
-                LobeSet::SHARP | LobeSet::DELTA
+            let lobes = match target.radiance(self.estimator, &surface, footprint, throughput, rng) {
+                Some(read) => {
+                    radiance += read;
+                    LobeSet::SHARP | LobeSet::DELTA
+                }
+                None => {
+                    target.traces.rays.retraced += 1;
+                    LobeSet::ALL
+                }
             };
             if !surface.bsdf.has(lobes) {
                 break;
             }
             if lobes.intersects(LobeSet::NON_DELTA) {
-                radiance += throughput * self.one_light(&surface, lobes, rng, rays);
+                radiance += throughput * self.one_light(&surface, lobes, rng, &mut target.traces.rays);
             }
             let sample = surface.bsdf.sample(rng.draw(), rng.draw2(), lobes, TransportMode::Radiance);
             let Some(sample) = sample else { break };
@@ -165,13 +159,12 @@ impl<'a> Gatherer<'a> {
             }
             let kind = ray_kind(&sample);
             let ray = Ray::leaving(surface.p, surface.ng, sample.wi, kind | self.lit.accel.lamp_bit());
-            rays.gather += 1;
+            target.traces.rays.gather += 1;
             let hit = self.lit.accel.intersect(&ray);
-            let readable = hit.filter(|_| !sample.is_delta).and_then(|hit| self.readable(&hit, 0.0));
+            let readable = hit.filter(|_| !sample.is_delta).and_then(|hit| self.readable(&ray, &hit, 0.0));
             if let Some(readable) = readable {
-                let (p, class) = readable.place(&ray, &self.pyramid);
-                let irradiance = self.pyramid.irradiance(p, class, readable.level);
-                return radiance + throughput * readable.albedo_over_pi * irradiance;
+                let throughput = throughput * readable.reflectance;
+                return radiance + target.read(self.estimator, readable.place, throughput);
             }
             let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
             let met = self.meet(ray, Some(hit), Sampled { pdf, shares: Shares::EVEN, kind }, rng);
@@ -186,33 +179,6 @@ impl<'a> Gatherer<'a> {
             surface = next;
         }
         radiance
-    }
-
-    /// Light of the surface's diffuse and glossy lobes, from the pyramid.
-    fn look_up(&self, surface: &Surface<'_>, footprint: Footprint, rng: &mut Rng) -> Rgb {
-        let bsdf = &surface.bsdf;
-        let level = self.pyramid.level_for(footprint.solid_angle * footprint.travelled * footprint.travelled);
-        let class = self.pyramid.class(bsdf.frame.ng);
-        let mut radiance = Rgb::BLACK;
-        if bsdf.has(LobeSet::DIFFUSE) {
-            let irradiance = self.pyramid.irradiance(surface.p, class, level);
-            radiance += bsdf.diffuse_albedo() * irradiance * std::f32::consts::FRAC_1_PI;
-        }
-        if bsdf.has(LobeSet::ROUGH) {
-            let material = self.lit.accel.material(surface.hit.object, surface.hit.primitive);
-            let tint = self.lit.materials[material].specular_tint();
-            let shift = [rng.draw() - 0.5, rng.draw() - 0.5];
-            radiance += tint * self.pyramid.glossy_radiance(surface.p, class, level, bsdf.wo(), shift);
-        }
-        radiance
-    }
-
-    /// True where a look-up would read a cell that the ray's start may lie in, or where a mirror-like ray would see cells.
-    fn too_short(&self, surface: &Surface<'_>, footprint: Footprint) -> bool {
-        let area = footprint.solid_angle * footprint.travelled * footprint.travelled;
-        let cell = self.pyramid.cell_size(surface.p, self.pyramid.level_for(area));
-        let near = footprint.travelled < self.retrace_distance * cell;
-        near || (footprint.sharp && area < cell * cell)
     }
 
     /// Direct light at a vertex that is followed: one light sample against one direction of the BSDF.

@@ -1,8 +1,10 @@
-//! The photon pass: light from the lamps, followed from surface to surface and added to the pyramid at every landing.
+//! The photon pass: light from the lamps, followed from surface to surface and deposited at every landing.
 //!
 //! N photons start with the flux Φᵢ / N, chosen by power. Wherever a photon lands on a diffuse or glossy surface its flux
 //! (before the surface's albedo) is deposited: Σ flux / area estimates the irradiance, direct and indirect, caustics
 //! included (Jensen 1996). Roulette is unbiased; depth is cut only as a safeguard.
+
+mod deposit;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -13,12 +15,15 @@ use crate::accel::{Hit, Ray};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::error::RenderError;
-use crate::lit_scene::{LitScene, Surface, lobes_lit, ray_kind};
+use crate::estimator::{Landing, PhotonSink};
+use crate::lit_scene::{LitScene, lobes_lit, ray_kind};
 use crate::progress::Progress;
-use crate::pyramid::{Accumulator, Landing, SETS};
+use crate::pyramid::SETS;
 use crate::sampling::PhotonSampler;
 use crate::scene::visibility;
 use crate::settings::PhotonPassSettings;
+
+pub use deposit::PyramidDeposits;
 
 /// Photons of one task: long enough to hide scheduling, short enough to cancel at once.
 const BATCH: u64 = 4096;
@@ -42,12 +47,12 @@ pub struct PhotonPassCounts {
 ///
 /// # Errors
 /// [`RenderError::Cancelled`].
-pub fn run(
+pub fn run<S: PhotonSink>(
     lit: &LitScene<'_>,
     settings: &PhotonPassSettings,
     seed: u32,
     sets: usize,
-    accumulator: &Accumulator<'_>,
+    sink: &S,
     progress: &Progress,
 ) -> Result<PhotonPassCounts, RenderError> {
     let count = settings.photon_count;
@@ -55,18 +60,20 @@ pub fn run(
         return Ok(PhotonPassCounts::default());
     }
     let (segments, done) = (AtomicU64::new(0), AtomicU64::new(0));
-    let tracer = Tracer { lit, accumulator, max_depth: settings.max_depth };
     let set_of = |id: u64| (id * sets as u64 / count) as usize;
     #[expect(clippy::cast_precision_loss, reason = "a share of at most 10^9 photons")]
-    let shares: [f32; SETS] = std::array::from_fn(|set| {
+    let tracers: [Tracer<'_, S>; SETS] = std::array::from_fn(|set| {
         let first = |set: usize| (set as u64 * count).div_ceil(sets as u64);
-        (1.0 / (first(set + 1) - first(set)).max(1) as f64) as f32
+        let share = (1.0 / (first(set + 1) - first(set)).max(1) as f64) as f32;
+        Tracer { lit, sink, set, share, max_depth: settings.max_depth }
     });
     (0..count.div_ceil(BATCH)).into_par_iter().try_for_each(|batch| {
         progress.check()?;
         let ids = batch * BATCH..((batch + 1) * BATCH).min(count);
-        let photon = |id| tracer.photon(PhotonSampler::new(id, seed), set_of(id), shares[set_of(id)]);
+        let mut landed = S::Batch::default();
+        let photon = |id| tracers[set_of(id)].photon(PhotonSampler::new(id, seed), &mut landed);
         let traced: u64 = ids.clone().map(photon).sum();
+        sink.finish(batch, landed);
         segments.fetch_add(traced, Ordering::Relaxed);
         let done = done.fetch_add(ids.end - ids.start, Ordering::Relaxed);
         #[expect(clippy::cast_precision_loss, reason = "a fraction for a status line")]
@@ -76,18 +83,21 @@ pub fn run(
     Ok(PhotonPassCounts { emitted: count, segments: segments.into_inner() })
 }
 
-struct Tracer<'a> {
+struct Tracer<'a, S> {
     lit: &'a LitScene<'a>,
-    accumulator: &'a Accumulator<'a>,
+    sink: &'a S,
+    /// Set of its photons, and one photon's share of the light.
+    set: usize,
+    share: f32,
     max_depth: u32,
 }
 
-impl Tracer<'_> {
-    /// Follows one photon, a share of the light of its set, from its lamp; gives the number of segments traced.
-    fn photon(&self, mut sampler: PhotonSampler, set: usize, share: f32) -> u64 {
+impl<S: PhotonSink> Tracer<'_, S> {
+    /// Follows one photon from its lamp; gives the number of segments traced.
+    fn photon(&self, mut sampler: PhotonSampler, landed: &mut S::Batch) -> u64 {
         let u = [sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw()];
         let Some(emission) = self.lit.lights.emit(u) else { return 0 };
-        let flux = emission.flux * share;
+        let flux = emission.flux * self.share;
         let leaving = match emission.normal {
             Some(normal) => {
                 Ray::leaving(emission.origin, normal, emission.direction, visibility::DIFFUSE).origin
@@ -103,7 +113,7 @@ impl Tracer<'_> {
             let Some(hit) = self.lit.accel.intersect(&ray) else { break };
             travelled += hit.t;
             if travelled >= emission.lit_from {
-                segments += self.scatter(ray, hit, flux, set, lobes, &mut sampler);
+                segments += self.scatter(ray, hit, flux, lobes, &mut sampler, landed);
             }
             if emission.casts_shadow {
                 break;
@@ -120,9 +130,9 @@ impl Tracer<'_> {
         mut ray: Ray,
         mut hit: Hit,
         mut flux: Rgb,
-        set: usize,
         lit_lobes: LobeSet,
         sampler: &mut PhotonSampler,
+        landed: &mut S::Batch,
     ) -> u64 {
         let mut segments = 0;
         let mut lobes = lit_lobes;
@@ -130,13 +140,11 @@ impl Tracer<'_> {
             let surface = self.lit.surface(&ray, hit);
             let bsdf = &surface.bsdf;
             if bsdf.has(lobes_read(lobes)) {
-                let stored = flux * bsdf.frame.irradiance_factor(-ray.direction);
-                let landing = self.accumulator.deposit(set, surface.p, bsdf.frame.ng, stored);
-                if let Some(landing) =
-                    landing.filter(|_| bsdf.has(lobes_read(lobes).without(LobeSet::DIFFUSE)))
-                {
-                    self.deposit_glossy(landing, &surface, stored, [sampler.draw(), sampler.draw()]);
-                }
+                let glossy = bsdf.has(lobes_read(lobes).without(LobeSet::DIFFUSE));
+                let at = if glossy { [sampler.draw(), sampler.draw()] } else { [0.0; 2] };
+                let flux = flux * bsdf.frame.irradiance_factor(-ray.direction);
+                let landing = Landing { surface: &surface, set: self.set, flux, glossy, at };
+                self.sink.land(landed, &landing);
             }
             let u_lobe = sampler.draw();
             let u = [sampler.draw(), sampler.draw()];
@@ -160,15 +168,6 @@ impl Tracer<'_> {
             }
         }
         segments
-    }
-
-    fn deposit_glossy(&self, landing: Landing, surface: &Surface<'_>, flux: Rgb, at: [f32; 2]) {
-        let material = self.lit.accel.material(surface.hit.object, surface.hit.primitive);
-        let tint = self.lit.materials[material].specular_tint();
-        let tinted = Rgb([0, 1, 2].map(|c| flux.0[c] / tint.0[c]));
-        self.accumulator.deposit_glossy(landing, at, |direction| {
-            surface.bsdf.eval(direction, LobeSet::ROUGH, TransportMode::Radiance) * tinted
-        });
     }
 
     fn next_direction(

@@ -7,6 +7,17 @@ use glam::{IVec3, Vec3};
 use super::{Cell, Pyramid};
 use crate::color::Rgb;
 
+/// A look-up of irradiance.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Place {
+    /// Where.
+    pub p: Vec3,
+    /// Normal class.
+    pub class: u32,
+    /// Level.
+    pub level: u32,
+}
+
 /// A pyramid as one set of photons filled it.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
@@ -35,17 +46,11 @@ impl<'a> View<'a> {
     /// memory is waited for once and not once per place.
     #[must_use]
     #[inline(always)]
-    pub fn irradiances<const N: usize>(
-        &self,
-        p: &[Vec3; N],
-        class: &[usize; N],
-        level: &[usize; N],
-        wanted: &[bool; N],
-    ) -> [Rgb; N] {
+    pub fn irradiances<const N: usize>(&self, at: &[Place; N], wanted: &[bool; N]) -> [Rgb; N] {
         let mut found = [None; N];
         let mut bricks = [(0, 0, 0); N];
         for i in (0..N).filter(|&i| wanted[i]) {
-            found[i] = self.pyramid.grid.locate(self.pyramid.grid.offset(p[i]), level[i]);
+            found[i] = self.pyramid.grid.locate(self.pyramid.grid.offset(at[i].p), at[i].level as usize);
         }
         for i in 0..N {
             if let Some((level, cell)) = found[i] {
@@ -56,13 +61,14 @@ impl<'a> View<'a> {
         let mut places = [None; N];
         for i in 0..N {
             let (level, brick, bit) = bricks[i];
-            places[i] = found[i].and_then(|_| self.pyramid.levels[level].index.place(brick, bit, class[i]));
+            places[i] = found[i]
+                .and_then(|_| self.pyramid.levels[level].index.place(brick, bit, at[i].class as usize));
         }
         let mut out = [Rgb::BLACK; N];
         for i in (0..N).filter(|&i| wanted[i]) {
             out[i] = match places[i].map(|place| &self.pyramid.levels[bricks[i].0].cells[self.set][place]) {
                 Some(cell) if !cell.is_mixed() => cell.irradiance(),
-                _ => self.irradiance(p[i], class[i], level[i]),
+                _ => self.irradiance(at[i].p, at[i].class as usize, at[i].level as usize),
             };
         }
         out

@@ -33,7 +33,7 @@ pub use bins::DirectionBins;
 pub use class::NormalClasses;
 pub use grid::Grid;
 pub use layout::{Layout, SurfaceTriangle};
-pub use lookup::View;
+pub use lookup::{Place, View};
 
 use crate::color::Rgb;
 use bins::BinStore;
