@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from benchmarks import capture
+from benchmarks.figures import machine
 from benchmarks.tables.document import TABLES, core_version, document
 from benchmarks.tables.markdown import page
 from benchmarks.tables.pictures import draw_pictures, draw_plots
@@ -50,6 +51,7 @@ def make(
     subjects: Sequence[Subject], scale: Scale, store: Store, output: Path, command: str, say: Say
 ) -> None:
     """Renders what is missing and writes everything into the folder `output`; `command` is named as its maker."""
+    before = machine()
     runner = Runner(store, subjects, say)
     pilots = [Pilot.of(subject, scale) for subject in subjects]
     found = runner.run([job for pilot in pilots for job in (pilot.photons, pilot.path)])
@@ -58,7 +60,7 @@ def make(
         for subject, pilot in zip(subjects, pilots)
     ]
     renders = runner.run([job for plan in plans for job in plan.jobs()])
-    figures = document(plans, renders, scale, command)
+    figures = document(plans, renders, scale, command, before)
     output.mkdir(parents=True, exist_ok=True)
     for plan in plans:
         name = plan.subject.name

@@ -10,7 +10,6 @@ from typing import Any
 
 import bpy
 
-from benchmarks.figures import machine
 from benchmarks.tables.assemble import Renders, SceneFigures
 from benchmarks.tables.job import THREADS
 from benchmarks.tables.plan import Scale, ScenePlan
@@ -21,7 +20,9 @@ TABLES = ("table1", "table2", "table3")
 _ROOT = Path(__file__).resolve().parents[2]
 
 
-def document(plans: Sequence[ScenePlan], renders: Renders, scale: Scale, command: str) -> dict[str, Any]:
+def document(
+    plans: Sequence[ScenePlan], renders: Renders, scale: Scale, command: str, machine: dict[str, Any]
+) -> dict[str, Any]:
     """`table1` to `table3` as {scene: {setting: row}}, what they were measured on and with, and the verdicts."""
     figures = {plan.subject.name: SceneFigures(plan, renders) for plan in plans}
     tables = {scene: _plain(figure) for scene, figure in figures.items()}
@@ -35,7 +36,7 @@ def document(plans: Sequence[ScenePlan], renders: Renders, scale: Scale, command
         ],
         "settings": {**asdict(scale), **_defaults(), "threads": THREADS},
         "commands": {"all": command, "renders": {plan.subject.name: _commands(plan) for plan in plans}},
-        "machine": machine(),
+        "machine": machine,
         "versions": versions(),
     }
 

@@ -28,7 +28,7 @@ def draw_pictures(plan: ScenePlan, renders: Renders, folder: Path) -> None:
 
 
 def draw_plots(subject: Subject, tables: dict[str, Rows], folder: Path) -> None:
-    """The plots of one scene from its rows, by table and setting."""
+    """The plots of one scene from its rows, by table and setting. Errors that are none have no place on their axes."""
     bins = _error_chart(subject, tables["table1"], "Direction bins", subject.published.rms_by_bins)
     grids = {str(finest): rms for finest, rms in subject.published.rms_by_finest.items()}
     finest = _error_chart(subject, tables["table2"], "Cells along the longest side", grids)
@@ -50,7 +50,8 @@ def _error_chart(subject: Subject, rows: Rows, title: str, published: dict[str, 
     def points(estimator: str, kind: str) -> list[tuple[float, float]]:
         prefix = f"{estimator} "
         settings = [setting for setting in rows if setting.startswith(prefix)]
-        return [(_number(setting.removeprefix(prefix)), rows[setting][kind]) for setting in settings]
+        found = [(_number(setting.removeprefix(prefix)), rows[setting][kind]) for setting in settings]
+        return [(x, rms) for x, rms in found if rms > 0.0]
 
     series = [
         Series([(_number(value), rms) for value, rms in published.items()], GREY, "paper", width=1.5),
@@ -83,10 +84,11 @@ def _time_chart(subject: Subject, rows: Rows) -> Chart:
             labels=[Label(setting, (row["seconds"], row["rms_truth"]))],
         )
         for setting, row in rows.items()
+        if row["rms_truth"] > 0.0
     ]
     return Chart(
         title=f"Time against error: {subject.name}",
-        note="A picture of the paper's size; RMS of the indirect light against the truth",
+        note="RMS of the indirect light against the truth",
         x=Axis("Photon pass, building and gather (s)"),
         y=Axis("RMS (% of the brightest pixel)"),
         series=series,

@@ -16,7 +16,7 @@ def measured_with(document: Document, subjects: Sequence[Subject]) -> Iterator[s
     yield (
         f"On {machine['processor']}, {machine['cores']} cores, {settings['threads']} threads, "
         f"{machine['system']}, with a "
-        f"load of {machine['load']:.1f} at the end; commit {versions['commit']}, core {versions['rgp_core']}, Embree "
+        f"load of {machine['load']:.1f} before; commit {versions['commit']}, core {versions['rgp_core']}, Embree "
         f"{versions['embree']}, Blender {versions['blender']}, Python {versions['python']}. The paper had one "
         "processor "
         "of a Pentium D, 3.0 GHz."
