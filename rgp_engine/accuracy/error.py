@@ -13,8 +13,8 @@ CLIPPED_AT = 8.0
 """Times the picture's mean: what is brighter is white in any case, and pixels at the edge of a lamp would drown
 the error of all others. The same as in the statistics of a render."""
 
-# Noise of neighboring pixels is alike, as the pixel filter shares their samples; that of blocks is not.
-_BLOCK = 8
+# Noise of neighboring pixels is alike, as they share samples and strata; that of blocks is not.
+_BLOCK = 4
 # An error is told from none when its square is this many times the standard error that noise gives to it.
 _CERTAINTY = 2.0
 
@@ -67,14 +67,12 @@ class Reference:
 
 @dataclass(frozen=True)
 class Error:
-    """Root mean square error of a picture."""
+    """Error of a picture: `rms_clipped` of the command `compare` and of a render's statistics."""
 
     percent: float
-    """Of the clipped picture, as `rms_clipped` of a render's statistics and of the command `compare`: % of its mean."""
+    """Root mean square of the clipped picture, % of its mean."""
     is_limit: bool
     """The reference cannot tell it from a smaller one, down to none."""
-    rms_mean: float
-    """Of the picture as it is, as `rms_mean` of the command `compare`: % of its mean."""
 
 
 def measured_error(picture: Picture, reference: Reference) -> Error:
@@ -83,16 +81,11 @@ def measured_error(picture: Picture, reference: Reference) -> Error:
     With halves A and B, `(picture - A)(picture - B)` has the mean of the squared true error: the noise of the reference
     drops out. That is the same as subtracting the noise of `(A + B) / 2` in quadrature.
     """
-    means = reference.means
-    plain = _rms(*(part.astype(np.float64) for part in (picture, reference.first, reference.second)))
-    clipped = _rms(*map(means.clip, (picture, reference.first, reference.second)))
-    percent, resolves = 100.0 * clipped / means.clipped, reference.resolves
-    return Error(max(percent, resolves), is_limit=percent < resolves, rms_mean=100.0 * plain / means.mean)
-
-
-def _rms(picture: _Floats, first: _Floats, second: _Floats) -> float:
-    """Root mean square difference of a picture from the mean of two halves, less their noise."""
-    return sqrt(max(float(np.mean((picture - first) * (picture - second))), 0.0))
+    clip = reference.means.clip
+    a, b = (clip(picture) - clip(half) for half in (reference.first, reference.second))
+    square = max(float(np.mean(a * b)), 0.0)
+    percent, resolves = 100.0 * sqrt(square) / reference.means.clipped, reference.resolves
+    return Error(max(percent, resolves), is_limit=percent < resolves)
 
 
 def _block_means(values: _Floats) -> _Floats:

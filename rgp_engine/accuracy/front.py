@@ -20,8 +20,6 @@ class Row:
     """%; see `Error.percent`."""
     is_limit: bool
     """The reference cannot tell the error from a smaller one."""
-    rms_mean: float
-    """%; see `Error.rms_mean`."""
     bytes: int
     """Memory of the pyramid."""
 

@@ -121,7 +121,6 @@ def _record(row: Row) -> dict[str, Any]:
         "seconds": row.seconds,
         "error": row.error,
         "is_limit": row.is_limit,
-        "rms_mean": row.rms_mean,
         "bytes": row.bytes,
     }
 

@@ -22,8 +22,8 @@ def representative_window(first: _Floats, second: _Floats, size: tuple[int, int]
     """The window of `size` (width, height) whose error is most like the whole picture's.
 
     The two pictures, rows from the bottom, are the whole with few samples and different noise: their squared difference
-    shows where errors are. In the Cornell box, its glossy twin and the two rooms, with seven settings each, the error of
-    this window was 0.7 to 1.5 times the picture's; that of the middle 0.7 to 1.9 times.
+    shows where errors are. In the Cornell box, its glossy twin and the two rooms, with seven settings each, the error
+    of this window was 0.7 to 1.5 times the picture's; that of the middle 0.7 to 1.9 times.
     """
     height, width = first.shape[:2]
     window_width, window_height = min(size[0], width), min(size[1], height)

@@ -24,9 +24,9 @@ _STOP_SECONDS = 5.0
 _EPILOG = """\
 Renders a part of the picture with many settings around those of the file (finest level, direction bins where there
 are glossy cells, gather rays, camera samples, photons), and measures each against a reference that it makes first. The
-error is rms_mean of the command compare: root mean square, the mean of the picture is 100 %; the noise of the reference
-is subtracted. DIR gets accuracy.json with all rows, the front and the cheapest settings for errors of 2, 1, 0.5 and
-0.25 %, and the plot as accuracy.svg and accuracy.png. Ctrl+C ends it with what there is.
+error is rms_clipped of the command compare, less the noise of the reference: root mean square of the picture clipped at
+eight times its mean, which is 100 %. DIR gets accuracy.json with all rows, the front and the cheapest settings for
+errors of 2, 1, 0.5 and 0.25 %, and the plot as accuracy.svg and accuracy.png. Ctrl+C ends it with what there is.
 """
 
 

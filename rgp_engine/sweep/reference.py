@@ -14,15 +14,20 @@ _Settings = dict[str, dict[str, Any]]
 
 # Each half is the mean of parts with seeds of their own: few, as strata are the finer the larger a part is.
 _PARTS = 2
-_LEAST_RAYS, _MOST_RAYS = 32, 1024
+_LEAST_RAYS, _MOST_RAYS = 32, 4096
+# Edges and shadows want camera samples, indirect light wants rays: about here a second is spent best.
+_RAYS_PER_SAMPLE = 4
 
 
 def reference_settings(settings: _Settings, rays: int) -> _Settings:
     """Settings whose picture has no error but noise: light is followed along paths, and nothing is read from cells."""
-    gather = {**settings["gather"], "rays": rays, "camera_samples": rays}
-    pyramid = {**settings["pyramid"], "finest_resolution": 256}
-    photon_pass = {**settings["photon_pass"], "photon_count": 4_000 * rays}
-    return {**settings, "gather": gather, "pyramid": pyramid, "photon_pass": photon_pass}
+    gather = {
+        **settings["gather"],
+        "estimator": "path",
+        "rays": rays,
+        "camera_samples": rays // _RAYS_PER_SAMPLE,
+    }
+    return {**settings, "gather": gather}
 
 
 class ReferenceMaker:
@@ -66,7 +71,7 @@ class ReferenceMaker:
         """How it was made and how noisy it is (%)."""
         gather = reference_settings(self._settings, self._rays)["gather"]
         return {
-            "estimator": gather.get("estimator", "pyramid"),
+            "estimator": gather["estimator"],
             "rays": 2 * self.parts * gather["rays"],
             "camera_samples": 2 * self.parts * gather["camera_samples"],
             "seconds": self.seconds,

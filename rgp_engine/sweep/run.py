@@ -30,7 +30,7 @@ Report = Callable[[Sweep], None]
 
 # Pixels of the window: so many to the square.
 _WINDOW, _QUICK_WINDOW = 128, 96
-# Rounds after the first. Seconds of each at most, and of the first about, as a part of the reference's.
+# Rounds after the first. Seconds of each at most, and of the first as a guess, as a part of the reference's.
 _ROUNDS, _QUICK_ROUNDS = 2, 1
 _ROUND_SHARE = 0.4
 _FIRST_ROUND_SHARE = 0.6
@@ -167,9 +167,9 @@ class _Run:
         later = rounds * _ROUND_SHARE * seconds
         self._measure([base], reference, 0.0, later + _FIRST_ROUND_SHARE * seconds)
         first = first_round(base, is_glossy=self._sweep.is_glossy, is_quick=is_quick)[1:]
-        self._measure(first, reference, _FIRST_ROUND_SHARE * seconds, later)
+        self._measure(first, reference, sum(map(self._model().run_seconds, first)), later)
         for number in range(rounds):
-            model = Model(self._sweep.rows, self._costs, self._ratio)
+            model = self._model()
             measured = [row.quality for row in self._sweep.rows]
             wanted = next_round(model, base, measured, is_quick=is_quick)
             chosen = within(model, wanted, _ROUND_SHARE * seconds)
@@ -218,11 +218,13 @@ class _Run:
             seconds=costs.photon_pass + costs.gather * self._ratio + costs.rest,
             error=error.percent,
             is_limit=error.is_limit,
-            rms_mean=error.rms_mean,
             bytes=shot.stats["pyramid"]["bytes"],
         )
         self._sweep.rows.append(row)
         self._sweep.write(self._folder)
+
+    def _model(self) -> Model:
+        return Model(self._sweep.rows, self._costs, self._ratio)
 
     def _tell(self, message: str, seconds_left: float) -> None:
         self._sweep.message = message

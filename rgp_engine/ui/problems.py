@@ -79,13 +79,13 @@ class RGP_PT_effects(ClosedEnginePanel, Panel):
         effects = outcome.stats["effects"] if outcome else ()
         column = self.layout.column(align=True)
         for effect in (effect for effect in effects if effect["called_for"]):
-            split = column.split(factor=0.5)
-            split.label(text=effect["name"].capitalize(), icon="CHECKMARK")
-            for cost in effect_costs(effect):
+            for label, cost in zip((effect["name"].capitalize(), ""), effect_costs(effect)):
+                split = column.split(factor=0.65)
+                split.label(text=label)
                 split.label(text=cost)
             column.label(text=effect["because"], icon="BLANK1")
         for effect in (effect for effect in effects if not effect["called_for"]):
-            column.label(text=f"{effect['name'].capitalize()}: not called for", icon="REMOVE")
+            column.label(text=f"{effect['name'].capitalize()}: not called for")
 
 
 CLASSES = (RGP_PT_problems, RGP_PT_statistics, RGP_PT_effects)

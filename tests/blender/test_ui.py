@@ -160,7 +160,7 @@ def test_effects_of_the_last_render(scene, monkeypatch):
     )
     assert draw(problems.RGP_PT_effects) == [
         "Direct light", "1.50 s", "lamp 'Sun'",
-        "Indirect glossy", "0.50 s", "1.5 MiB", "it shines",
+        "Indirect glossy", "0.50 s", "", "1.5 MiB", "it shines",
         "Caustics: not called for",
     ]  # fmt: skip
 
