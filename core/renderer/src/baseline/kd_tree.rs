@@ -72,32 +72,39 @@ impl KdTree {
     }
 
     /// Shows `visitor` the points about `p`, near parts of the tree first.
+    #[inline]
     pub(super) fn search(&self, p: Vec3, visitor: &mut impl Visitor) {
-        if !self.leaves.is_empty() {
-            self.descend(0, self.leaves.len(), p, [0.0; 3], visitor);
-        }
-    }
-
-    /// Searches `count` leaves; `beyond` is how far outside their box `p` is along each axis.
-    fn descend(&self, first: usize, count: usize, p: Vec3, beyond: [f32; 3], visitor: &mut impl Visitor) {
-        if count == 1 {
+        let mut waiting = [Branch::default(); DEPTH];
+        waiting[0].count = self.leaves.len();
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let Branch { mut first, mut count, beyond } = waiting[depth];
+            if count == 0 || Vec3::from(beyond).length_squared() >= visitor.bound() {
+                continue;
+            }
+            while count > 1 {
+                let half = count / 2;
+                let split = self.splits[first + half - 1];
+                let axis = split.axis as usize;
+                let distance = p[axis] - split.at;
+                let mut far = Branch { first, count: half, beyond };
+                far.beyond[axis] = distance;
+                if distance < 0.0 {
+                    (far.first, far.count) = (first + half, count - half);
+                    count = half;
+                } else {
+                    first += half;
+                    count -= half;
+                }
+                waiting[depth] = far;
+                depth += 1;
+            }
             self.scan(first, p, visitor);
-            return;
-        }
-        let half = count / 2;
-        let split = self.splits[first + half - 1];
-        let axis = split.axis as usize;
-        let distance = p[axis] - split.at;
-        let (lower, upper) = ((first, half), (first + half, count - half));
-        let (near, far) = if distance < 0.0 { (lower, upper) } else { (upper, lower) };
-        self.descend(near.0, near.1, p, beyond, visitor);
-        let mut beyond = beyond;
-        beyond[axis] = distance;
-        if Vec3::from(beyond).length_squared() < visitor.bound() {
-            self.descend(far.0, far.1, p, beyond, visitor);
         }
     }
 
+    #[inline]
     fn scan(&self, number: usize, p: Vec3, visitor: &mut impl Visitor) {
         let leaf = &self.leaves[number];
         let mut distances = [0.0; LEAF];
@@ -111,6 +118,18 @@ impl KdTree {
             }
         }
     }
+}
+
+/// Splits between the root and a leaf, at most: those of four billion points.
+const DEPTH: usize = 32;
+
+/// Leaves that wait to be searched.
+#[derive(Clone, Copy, Debug, Default)]
+struct Branch {
+    first: usize,
+    count: usize,
+    /// How far outside their box the point is along each axis.
+    beyond: [f32; 3],
 }
 
 /// Sorts `items` so that each half, quarter and so on of the leaves lies on one side of a plane.

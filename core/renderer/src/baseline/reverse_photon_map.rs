@@ -54,6 +54,8 @@ pub struct ReversePhotonMap {
     map: PhotonMap,
     groups: Vec<Group>,
     largest_batch: AtomicUsize,
+    /// The vector instructions this processor has.
+    instructions: pulp::Arch,
 }
 
 impl ReversePhotonMap {
@@ -72,7 +74,7 @@ impl ReversePhotonMap {
             }
         };
         let groups = (0..map.len().div_ceil(LEAF)).into_par_iter().map(|leaf| group(leaf * LEAF)).collect();
-        Self { map, groups, largest_batch: AtomicUsize::new(0) }
+        Self { map, groups, largest_batch: AtomicUsize::new(0), instructions: pulp::Arch::new() }
     }
 
     /// Memory (bytes), with the hits of the largest batch so far.
@@ -89,7 +91,10 @@ impl ReversePhotonMap {
         let near = |&number: &u32| self.groups[number as usize].reaches(low, high);
         let groups: Vec<u32> = groups.iter().copied().filter(near).collect();
         if hits.len() <= HITS {
-            self.splat(hits, &groups, low, high);
+            self.instructions.dispatch(
+                #[inline(always)]
+                || self.splat(hits, &groups, low, high),
+            );
             return;
         }
         let axis = (high - low).max_position();
@@ -107,6 +112,7 @@ impl ReversePhotonMap {
     }
 
     /// Adds the light of the photons of `groups` to a few hits, which lie in the box from `low` to `high`.
+    #[inline(always)]
     fn splat(&self, hits: &mut [Hit], groups: &[u32], low: Vec3, high: Vec3) {
         let mut p = [[f32::INFINITY; HITS]; 3];
         let mut ng = [[0.0; HITS]; 3];

@@ -294,8 +294,12 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
                 .unwrap_or_else(|| GatherRay::diffuse(self.lambert.weight[lane], Some(pdfs[lane])));
             let hit = self.packet.hit(lane);
             let solid_angle = ray.pdf.map_or(0.0, |pdf| (g.per_ray / pdf).min(g.widest));
-            let readable = hit.filter(|_| !ray.sharp);
-            match readable.and_then(|hit| g.readable(&self.packet.ray(lane), &hit, solid_angle)) {
+            // No closure: it would not be compiled for the wider instructions.
+            let readable = match hit {
+                Some(hit) if !ray.sharp => g.readable(&self.packet.ray(lane), &hit, solid_angle),
+                _ => None,
+            };
+            match readable {
                 Some(readable) => {
                     places[lane] = readable.place;
                     weight[lane] = ray.weight * readable.reflectance;
