@@ -6,11 +6,15 @@ from typing import Any
 from benchmarks.tables import paper
 from benchmarks.tables.plan import PHOTON_MAP, PYRAMID, PYRAMID_2006
 from benchmarks.tables.subjects import SUBJECTS, Subject
-from benchmarks.tables.wording import compared, measured_with, weaknesses
+from benchmarks.tables.wording import compared, measured_with, one_line, weaknesses
 
 Document = dict[str, Any]
 
 _OURS = (PYRAMID, PYRAMID_2006)
+_TIMES_HEAD = (
+    *("method", "photons", "build", "gather", "all"),
+    *("speed-up", "memory", "RMS against photon map", "RMS against truth"),
+)
 
 
 def page(document: Document, *, has_notes: bool) -> str:
@@ -18,9 +22,7 @@ def page(document: Document, *, has_notes: bool) -> str:
     subjects = [subject for subject in SUBJECTS if subject.name in document["table1"]]
     parts = [
         "# The paper's tables, with this engine's figures",
-        f"Written by `{document['commands']['all']}`, which renders everything anew; all figures are in "
-        "[tables.json](tables.json), each with the command of its render. The paper is Yue, Iwasaki, Nishita, "
-        "*Radiance Grid Pyramid*; its figures stand beside ours wherever it gives any.",
+        *_introduction(document),
         "## What was to be reached",
         *_verdicts(document),
         *(["[notes.md](notes.md) says why what falls short does, and what was tried."] if has_notes else []),
@@ -40,109 +42,90 @@ def page(document: Document, *, has_notes: bool) -> str:
     return "\n\n".join(parts) + "\n"
 
 
+def _introduction(document: Document) -> Iterator[str]:
+    yield one_line(f"""
+        Written by `{document["commands"]["all"]}`. Every figure is in [tables.json](tables.json), with the
+        command of its render. The paper is Yue, Iwasaki, Nishita, *Radiance Grid Pyramid*; its figures stand
+        beside ours wherever it gives any.
+    """)
+    if document["settings"]["photon_share"] != 1.0:
+        yield "**A quick run:** small pictures, few rays and few photons. It shows that all works, and no more."
+
+
 def _verdicts(document: Document) -> Iterator[str]:
+    columns = ("claim", "scene", "paper", "to_reach", "reached", "verdict")
     yield _table(
         ("claim", "scene", "paper", "to reach", "here", ""),
-        [
-            (v["claim"], v["scene"], v["paper"], v["to_reach"], v["reached"], v["verdict"])
-            for v in document["verdicts"]
-        ],
+        [[verdict[column] for column in columns] for verdict in document["verdicts"]],
     )
 
 
 def _errors(document: Document, subjects: Sequence[Subject], name: str, column: str) -> Iterator[str]:
     """One table and one plot per scene."""
+    columns = [f"`{ours}` against {what}" for ours in _OURS for what in ("photon map", "truth")]
+    kinds = [(ours, kind) for ours in _OURS for kind in ("rms_paper", "rms_truth")]
     for subject in subjects:
         rows = document[name][subject.name]
         values = [
             setting.removeprefix(f"{PYRAMID} ") for setting in rows if setting.startswith(f"{PYRAMID} ")
         ]
-        columns = [f"`{ours}` against {what}" for ours in _OURS for what in ("photon map", "truth")]
-        head = (column, f"paper, {subject.published.name}", *columns)
         lines = [
-            (
+            [
                 value.replace("x", " × ") if column == "bins" else f"{value}³",
                 _percent(_published(subject, name).get(value)),
-                *(
-                    _percent(rows[f"{ours} {value}"][kind])
-                    for ours in _OURS
-                    for kind in ("rms_paper", "rms_truth")
-                ),
-            )
+                *(_percent(rows[f"{ours} {value}"][kind]) for ours, kind in kinds),
+            ]
             for value in values
         ]
         yield f"### {subject.name}"
-        yield _table(head, lines)
+        yield _table((column, f"paper, {subject.published.name}", *columns), lines)
         yield f"The photon map itself is {rows[PHOTON_MAP]['rms_truth']:.3f} % from the truth."
         yield f"![{name} of {subject.name} as a plot]({name}_{subject.name}.svg)"
 
 
 def _times(document: Document, subjects: Sequence[Subject]) -> Iterator[str]:
-    yield (
-        "Seconds of a picture of the paper's size; *gather* is the final gather alone, *all* adds the photon "
-        "pass and "
-        "building what the gather asks. *Speed-up* is the photon map's *all* over this one's."
-    )
-    head = (
-        "method",
-        "photons",
-        "build",
-        "gather",
-        "all",
-        "speed-up",
-        "memory",
-        "against photon map",
-        "truth",
-    )
+    yield one_line("""
+        *Gather* is the final gather alone, *all* adds the photon pass and building what the gather asks.
+        *Speed-up* is the photon map's *all* over this one's.
+    """)
     for subject in subjects:
-        published, rows = subject.published, document["table3"][subject.name]
-        lines: list[Sequence[str]] = [
-            (
-                f"paper, {published.name}: {name}",
-                "",
-                "",
-                "",
-                f"{seconds:,.1f} s",
-                f"{published.photon_map_seconds / seconds:.1f}",
-                _megabytes(size),
-                _percent(error),
-                "",
-            )
-            for name, seconds, size, error in (
-                ("photon map", published.photon_map_seconds, published.photon_map_bytes, None),
-                (
-                    "pyramid",
-                    published.pyramid_seconds,
-                    published.pyramid_bytes,
-                    published.rms_by_bins[paper.BINS],
-                ),
-            )
-        ]
-        for setting, row in rows.items():
-            parts = document["details"][subject.name]["seconds"][setting]
-            lines.append(
-                (
-                    f"`{setting}`" + (" \\*" if parts["is_scaled"] else ""),
-                    *(f"{parts[part]:.1f} s" for part in ("photon_pass", "build", "gather")),
-                    f"{row['seconds']:.1f} s",
-                    f"{row['speedup']:.1f}",
-                    _megabytes(row["bytes"]),
-                    _percent(row["rms_paper"]),
-                    _percent(row["rms_truth"]),
-                )
-            )
+        rows, parts = document["table3"][subject.name], document["details"][subject.name]["seconds"]
+        lines = [_times_line(setting, row, parts[setting]) for setting, row in rows.items()]
         yield f"### {subject.name}"
-        yield _table(head, lines)
+        yield _table(_TIMES_HEAD, [*_published_times(subject), *lines])
         yield compared(document, subject)
         yield f"![Time against error in {subject.name}](table3_{subject.name}.svg)"
 
 
-def _pictures(subjects: Sequence[Subject]) -> Iterator[str]:
-    yield (
-        "The indirect light of the renders that table 3 times, at half their size, and the difference of the "
-        "two: red where "
-        "the pyramid is brighter, blue where it is darker, in percent of the photon map's brightest pixel."
+def _published_times(subject: Subject) -> Iterator[Sequence[str]]:
+    paper_has = subject.published
+    of_photon_map = ("photon map", paper_has.photon_map_seconds, paper_has.photon_map_bytes, None)
+    rms = paper_has.rms_by_bins[paper.BINS]
+    of_pyramid = ("pyramid", paper_has.pyramid_seconds, paper_has.pyramid_bytes, rms)
+    for method, seconds, size, error in (of_photon_map, of_pyramid):
+        speedup = f"{paper_has.photon_map_seconds / seconds:.1f}"
+        name = f"paper, {paper_has.name}: {method}"
+        yield (name, "", "", "", f"{seconds:,.1f} s", speedup, _megabytes(size), _percent(error), "")
+
+
+def _times_line(setting: str, row: dict[str, Any], parts: dict[str, Any]) -> Sequence[str]:
+    return (
+        f"`{setting}`" + (" \\*" if parts["is_scaled"] else ""),
+        *(f"{parts[part]:.1f} s" for part in ("photon_pass", "build", "gather")),
+        f"{row['seconds']:.1f} s",
+        f"{row['speedup']:.1f}",
+        _megabytes(row["bytes"]),
+        _percent(row["rms_paper"]),
+        _percent(row["rms_truth"]),
     )
+
+
+def _pictures(subjects: Sequence[Subject]) -> Iterator[str]:
+    yield one_line("""
+        The indirect light that `pyramid` and `photon_map` give in table 3, shrunk, and the difference of the two:
+        red where the pyramid is brighter, blue where it is darker, in percent of the photon map's brightest
+        pixel.
+    """)
     for subject in subjects:
         yield f"![{subject.name}: pyramid, photon map, difference](table4_{subject.name}.png)"
 
