@@ -3,13 +3,14 @@ SCENE ?= scenes/cornell_box.blend
 BPY ?=
 PYTHON ?=
 ARGS ?=
+QUICK ?=
 
 # The first Python that really runs; it only starts the tools, which then look for the one each Blender needs.
 HOST := $(shell for p in python3 python3.13 python3.11; do $$p -c '' 2>/dev/null && echo $$p && break; done)
 TOOLS = $(if $(HOST),$(HOST),$(error Python 3.11 or 3.13 is needed, and none runs here)) -m tools
 
 .DEFAULT_GOAL := help
-.PHONY: help render test lint bench extension lock clean
+.PHONY: help render test lint bench tables extension lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -25,6 +26,9 @@ lint: ## format, clippy, ruff, types, stub against binary, layers
 
 bench: ## speed, printed and written to out/bench.json
 	@$(TOOLS) bench --bpy "$(BPY)" $(ARGS)
+
+tables: ## the paper's tables with our figures, into docs/results: make tables [QUICK=1] (rough, into out/tables)
+	@$(TOOLS) tables --bpy "$(BPY)" $(if $(QUICK),--quick) $(ARGS)
 
 extension: ## dist/*.zip for Blender: make extension [PYTHON=3.13]
 	@$(TOOLS) extension --bpy "$(BPY)" --python "$(PYTHON)"

@@ -1,4 +1,4 @@
-"""The commands behind the Makefile: `python3 -m tools render | test | lint | bench | extension | clean`."""
+"""The commands behind the Makefile: `python3 -m tools render | test | lint | bench | tables | extension | clean`."""
 
 from __future__ import annotations
 
@@ -95,6 +95,12 @@ def bench(options: argparse.Namespace) -> None:
     require([python, "-m", "benchmarks", "-o", OUT / "bench.json", *options.more])
 
 
+def tables(options: argparse.Namespace) -> None:
+    """Makes the paper's tables with this engine's figures."""
+    python = make_blender(available_bpys(options.bpy)[-1])
+    require([python, "-m", "benchmarks.tables", *options.more])
+
+
 def extension(options: argparse.Namespace) -> None:
     """Builds the Blender extension with the wheels for one Python inside."""
     bpy = available_bpys(options.bpy)[-1]
@@ -112,7 +118,7 @@ def main() -> None:
     """Reads the command line and runs one command."""
     parser = argparse.ArgumentParser(prog="python3 -m tools", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
-    for command in (render, test, lint, bench, extension, clean):
+    for command in (render, test, lint, bench, tables, extension, clean):
         subparser = commands.add_parser(command.__name__, help=command.__doc__)
         subparser.set_defaults(run=command)
         subparser.add_argument(

@@ -20,7 +20,9 @@ _STOPS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 _COLORS = ((0.6, 0.9, 1.0), (0.1, 0.35, 0.9), (0.0, 0.0, 0.0), (0.85, 0.15, 0.1), (1.0, 0.9, 0.5))
 
 
-def draw_difference(path: Path, picture: Picture, reference: Picture) -> None:
+def draw_difference(
+    path: Path, picture: Picture, reference: Picture, titles: tuple[str, str, str] = ("A", "B", "A-B")
+) -> None:
     """Writes a PNG: A, B, and A - B in false colors with a scale bar in percent of the brightest pixel of B."""
     peak = float(np.nanmax(np.where(np.isfinite(reference), reference, np.nan)))
     mean = (picture - reference).mean(axis=2, dtype=np.float64)
@@ -28,12 +30,8 @@ def draw_difference(path: Path, picture: Picture, reference: Picture) -> None:
     scale = max(float(np.quantile(np.abs(difference), 0.995)), 1e-6)
     # Both pictures get the same exposure: the brighter tenth of the reference is just not white.
     exposure = 0.9 / max(float(np.quantile(np.nan_to_num(reference), 0.9)), 1e-30)
-    panels = [
-        _titled("A", _display(picture * exposure)),
-        _titled("B", _display(reference * exposure)),
-        _titled("A-B", _false_color(difference / scale)),
-    ]
-    strip = _beside(panels)
+    shown = (_display(picture * exposure), _display(reference * exposure), _false_color(difference / scale))
+    strip = _beside([_titled(title, pixels) for title, pixels in zip(titles, shown, strict=True)])
     bar = _scale_bar(strip.shape[1], 100.0 * scale)
     try:
         write_png(path, np.concatenate([_widened(strip, bar.shape[1]), bar]))

@@ -1,0 +1,1 @@
+"""The paper's tables with this engine's figures: `python -m benchmarks.tables`, run by `make tables`."""

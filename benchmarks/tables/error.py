@@ -1,0 +1,53 @@
+"""Errors in the paper's metric: root mean square, in percent of the brightest pixel of the photon map's picture."""
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+import numpy.typing as npt
+
+from benchmarks.tables.store import Picture
+
+# Noise of neighboring pixels is alike, as the pixel filter shares their samples; that of blocks is not.
+_BLOCK = 8
+
+
+def peak(picture: Picture) -> float:
+    """The brightest channel of all pixels."""
+    return float(picture.max())
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The converged picture, known from two independent noisy halves."""
+
+    first: Picture
+    second: Picture
+
+    def rms(self, picture: Picture, unit: float) -> float:
+        """Root mean square error of a picture (% of `unit`).
+
+        `(picture - first)(picture - second)` has the squared error as its mean: the noise of the halves does not
+        correlate and drops out.
+        """
+        to_first, to_second = (picture.astype(np.float64) - half for half in (self.first, self.second))
+        square = float(np.mean(to_first * to_second))
+        return 100.0 * sqrt(max(square, 0.0)) / unit
+
+    def noise(self, unit: float) -> float:
+        """Noise of the mean of both halves (% of `unit`)."""
+        return 100.0 * sqrt(float(np.mean(self._variance()))) / unit / sqrt(2.0)
+
+    def resolves(self, unit: float) -> float:
+        """Root of the standard error that noise gives to the square of `rms` (% of `unit`): smaller errors are not told
+        from none."""
+        variance = self._variance()
+        rows, columns = (max(size // _BLOCK, 1) for size in variance.shape)
+        parts = [np.array_split(row, columns, axis=1) for row in np.array_split(variance, rows)]
+        blocks = np.array([[part.mean() for part in row] for row in parts])
+        return 100.0 * sqrt(sqrt(float(np.mean(blocks**2)) / blocks.size)) / unit
+
+    def _variance(self) -> npt.NDArray[np.float64]:
+        """Of the noise of a half, from one sample per channel (height, width)."""
+        difference = self.first.astype(np.float64) - self.second
+        return np.asarray((difference**2 / 2.0).mean(axis=2))
