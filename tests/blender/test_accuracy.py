@@ -10,12 +10,20 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import bpy
+import numpy as np
 import pytest
 
 import rgp_engine
 from rgp_engine.accuracy import background
+from rgp_engine.accuracy.error import Means, Reference
+from rgp_engine.accuracy.quality import Quality
 from rgp_engine.accuracy.result import Sweep
 from rgp_engine.operators import accuracy
+from rgp_engine.settings import core_settings
+from rgp_engine.sweep import Request
+from rgp_engine.sweep import run as run_module
+from rgp_engine.sweep.shot import Shot
+from rgp_engine.sweep.taken_scene import TakenScene
 from rgp_engine.ui import accuracy as panel
 from tests.blender import build
 from tests.blender.test_ui import draw
@@ -104,6 +112,31 @@ def test_crop(blend, tmp_path):
     assert run(blend, "-o", tmp_path, *TINY, "--crop", "16x12").returncode == 0
     content = json.loads((tmp_path / "accuracy.json").read_text())
     assert (content["resolution"], content["window"][2:]) == ([32, 24], [16, 12])
+
+
+def test_time_is_predicted_for_the_whole_picture(monkeypatch, room, tmp_path):
+    """A window of a quarter of the pixels: the gather takes four times as long, all else as long."""
+    truth = np.full((12, 16, 3), 0.5, np.float32)
+    seconds = {"accel": 0.5, "photon_pass": 1.0, "pyramid": 0.25, "gather": 2.0, "total": 3.75}
+    stats = {"seconds": seconds, "pyramid": {"glossy_cells": 0, "bytes": 7}}
+    asked = []
+
+    def render(_taken, settings, _seed):
+        asked.append(settings)
+        return Shot(truth * np.float32(1.1), stats)
+
+    monkeypatch.setattr(run_module, "render", render)
+    room.rgp.gather.time_limit = 5.0
+    settings = core_settings(room)
+    quality = Quality.of(settings)
+    sweep = Sweep("room", (32, 24), (3, 4, 16, 12), quality, is_glossy=False, threads=2, versions={})
+    request = Request(1.0, is_quick=True, crop=None)
+    run = run_module._Run(sweep, TakenScene(None, settings, 0.1), 0.1, request, tmp_path, lambda _sweep: None)
+    run._measure([quality.scaled("rays", 2)], Reference(truth, truth, Means(0.5, 0.5)), 0.0, 0.0)
+    assert sweep.rows[0].seconds == pytest.approx(0.1 + 0.5 + 1.0 + 0.25 + 4 * 2.0)
+    assert (sweep.rows[0].error, sweep.rows[0].bytes) == (pytest.approx(10.0, rel=1e-4), 7)
+    assert asked[0]["gather"]["rays"] == 2 * quality.rays
+    assert asked[0]["gather"]["time_limit"] == 0.0, "what stops a render early would spoil the measurement"
 
 
 @pytest.mark.parametrize(

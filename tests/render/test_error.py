@@ -28,11 +28,12 @@ def render(scene: str, folder: Path, seed: int, *settings: str) -> tuple[Any, di
     picture, stats = folder / "picture.exr", folder / "stats.json"
     arguments = [argument for setting in settings for argument in ("--set", setting)]
     blend = common.SCENES / f"{scene}.blend"
-    command = ["render", str(blend), "-o", str(picture), "--stats", str(stats), "--resolution", "64x48"]
+    command = ["render", str(blend), "-o", str(picture), "--stats", str(stats), "--resolution", "96x72"]
     assert main([*command, "--seed", str(seed), *arguments]) == 0
     return exr.read(picture).astype(np.float64), json.loads(stats.read_text())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", ["cornell_box", "table"])
 def test_error_is_the_true_error(scene: str, tmp_path: Path) -> None:
     first, second = (render(scene, tmp_path, seed, *TRUTH)[0] for seed in (101, 102))

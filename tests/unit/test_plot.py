@@ -199,5 +199,19 @@ def test_labels_keep_off_points_and_lines():
         assert beside or y + disc.radius < label.at[1] - 0.72 * label.size or label.at[1] < y - disc.radius
 
 
+def test_labels_stay_on_the_chart():
+    points = [(0.5, 4.0), (20.0, 0.5)]
+    long = "a label that is rather long"
+    series = [Series(points, RED, labels=[Label(long, point) for point in points])]
+    drawing = draw_chart(chart(series=series, levels=[]), 500, 300)
+    labels = [item for item in drawing.items if isinstance(item, Text) and item.text == long]
+    assert len(labels) == 2
+    for label in labels:
+        width = text_width(long, label.size)
+        left = label.at[0] - {"start": 0.0, "middle": 0.5, "end": 1.0}[label.anchor] * width
+        assert left >= 0.0
+        assert left + width <= 500.0
+
+
 def test_png_and_svg_have_the_same_shape():
     assert rasterize(draw_chart(chart(), 640, 400), 2.0).shape == (800, 1280, 3)

@@ -5,6 +5,7 @@ use std::hint::black_box;
 use criterion::{BatchSize, Criterion, Throughput};
 use glam::{DVec3, Vec3};
 use rgp_renderer::color::Rgb;
+use rgp_renderer::math::Side;
 use rgp_renderer::pyramid::{Accumulator, Grid, Layout, NormalClasses, Pyramid, SurfaceTriangle};
 
 const RESOLUTION: u32 = 128;
@@ -54,8 +55,12 @@ impl Room {
     fn layout(&self) -> Layout {
         let bounds = [DVec3::splat(-HALF), DVec3::splat(HALF)];
         let grid = Grid::new(bounds, bounds, RESOLUTION, DVec3::ZERO);
-        let triangle = |i: usize| SurfaceTriangle { corners: self.triangles[i], glossy: false };
-        Layout::new(grid, NormalClasses::Six, self.triangles.len(), triangle, || true)
+        let triangle = |i: usize| {
+            let [a, b, c] = self.triangles[i];
+            let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+            SurfaceTriangle { corners: [a, b, c], normal, glossy: false }
+        };
+        Layout::new(grid, NormalClasses::Six, self.triangles.len(), triangle, |_| true, || true)
             .expect("nobody cancels")
     }
 
@@ -83,7 +88,7 @@ impl Room {
 fn deposit(accumulator: &Accumulator<'_>, landings: &[Landing]) {
     let flux = Rgb::splat(1.0 / PHOTONS as f32);
     for landing in landings {
-        black_box(accumulator.deposit(0, landing.p, landing.normal, flux));
+        black_box(accumulator.deposit(0, landing.p, Side { normal: landing.normal, back: false }, flux));
     }
 }
 
@@ -124,7 +129,11 @@ fn pyramid_lookup(criterion: &mut Criterion, pyramid: &Pyramid, landings: &[Land
         group.bench_function(format!("level_{level}"), |bencher| {
             bencher.iter(|| {
                 for landing in &landings[..LOOKUPS] {
-                    black_box(pyramid.view(0).irradiance(landing.p, pyramid.class(landing.normal), level));
+                    black_box(pyramid.view(0).irradiance(
+                        landing.p,
+                        pyramid.class(Side { normal: landing.normal, back: false }),
+                        level,
+                    ));
                 }
             });
         });

@@ -13,6 +13,7 @@ use crate::accel::LANES;
 use crate::bsdf::LobeSet;
 use crate::color::Rgb;
 use crate::lit_scene::Surface;
+use crate::math::Side;
 use crate::sampling::Rng;
 
 /// A photon on a surface that scatters widely enough for its light to be stored.
@@ -77,9 +78,9 @@ pub trait Estimator: Sync {
     /// Bounces that a path is allowed at least, whatever the setting.
     const LEAST_DEPTH: u32 = 0;
 
-    /// Where to read the light at `p` on the side of the unit geometric normal `ng`, seen from the unit vector `wo`; `None`
-    /// where the ray has to be followed instead.
-    fn place(&self, p: Vec3, ng: Vec3, wo: Vec3, footprint: Footprint) -> Option<Self::Place>;
+    /// Where to read the light at `p` on one side of a surface, seen from the unit vector `wo`; `None` where the ray has to
+    /// be followed instead.
+    fn place(&self, p: Vec3, side: Side, wo: Vec3, footprint: Footprint) -> Option<Self::Place>;
 
     /// Irradiance (W·m⁻²), or radiance (W·m⁻²·sr⁻¹) of those that read radiance.
     fn read(&self, place: &Self::Place) -> Rgb;
@@ -99,7 +100,7 @@ pub trait Estimator: Sync {
     /// be followed instead. Methods that know nothing but irradiance treat a glossy lobe as a diffuse one of the same
     /// albedo.
     fn radiance(&self, surface: &Surface<'_>, footprint: Footprint, _rng: &mut Rng) -> Option<Rgb> {
-        let place = self.place(surface.p, surface.bsdf.frame.ng, surface.bsdf.wo(), footprint)?;
+        let place = self.place(surface.p, surface.bsdf.frame.side(), surface.bsdf.wo(), footprint)?;
         Some(reflectance::<Self>(surface) * self.read(&place))
     }
 }

@@ -56,6 +56,9 @@ impl<'a> LitScene<'a> {
     pub fn entering(&self, origin: DVec3, direction: Vec3, mask: u32) -> (Ray, f32) {
         let [low, high] = self.accel.bounds().map(Vec3::as_dvec3);
         let margin = DVec3::splat(1e-3);
+        if (origin.cmpgt(low - margin) & origin.cmplt(high + margin)).all() {
+            return (Ray { origin: origin.as_vec3(), direction, mask }, 0.0);
+        }
         let d = direction.as_dvec3();
         let (to_low, to_high) = ((low - margin - origin) / d, (high + margin - origin) / d);
         let entry = to_low.min(to_high).max_element();

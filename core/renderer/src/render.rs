@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use glam::{DVec3, Vec3};
 
-use crate::accel::Accel;
+use crate::accel::{Accel, Ray};
 use crate::baseline;
 use crate::bsdf::{LobeSet, MaterialTable, PreparedMaterial};
 use crate::effects_plan::EffectsPlan;
@@ -17,12 +17,13 @@ use crate::film::Film;
 use crate::gather::{self, Gatherer, PyramidLookup, Stop, TraceFloor};
 use crate::light::Lights;
 use crate::lit_scene::LitScene;
+use crate::math::{Frame, Side};
 use crate::photon_pass::{self, PyramidDeposits};
 use crate::progress::{Progress, Stage};
 use crate::pyramid::{
-    Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, SETS, SurfaceTriangle,
+    Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, SETS, SidePoint, SurfaceTriangle,
 };
-use crate::scene::Scene;
+use crate::scene::{Scene, visibility};
 use crate::settings::{EstimatorKind, RenderSettings, parse_bins};
 use crate::stats::{EstimatorStats, Stats};
 
@@ -123,6 +124,7 @@ impl Work<'_> {
         let accumulator = Accumulator::new(&layout, lit.lights.total_flux().max_channel(), bins);
         self.photons(&PyramidDeposits::new(lit, &accumulator), sets, stats)?;
         stats.photons.deposited = accumulator.deposited();
+        stats.photons.lost = accumulator.lost();
 
         progress.enter(Stage::Pyramid);
         let clock = Instant::now();
@@ -214,11 +216,38 @@ fn layout(lit: &LitScene<'_>, settings: &RenderSettings, progress: &Progress) ->
         let material = &lit.materials[object.material(primitive as usize)];
         SurfaceTriangle {
             corners: object.corners(primitive as usize),
+            normal: lit.accel.geometric_normal(triangles[i].0, primitive),
             glossy: material.classes().intersects(LobeSet::ROUGH),
         }
     };
     let keep_going = || !progress.is_cancelled();
-    Layout::new(grid, classes, triangles.len(), triangle, keep_going).ok_or(RenderError::Cancelled)
+    let open = |point: &SidePoint| is_open(lit, point);
+    Layout::new(grid, classes, triangles.len(), triangle, open, keep_going).ok_or(RenderError::Cancelled)
+}
+
+/// How far inside a solid a surface is known to be hidden (cells).
+const DEEPEST: f32 = 16.0;
+
+/// Whether light can come to a point on the side of a surface: whether a ray straight up, or one of four leaning ones, meets
+/// nothing opaque within a cell, and does not meet a surface from inside soon after. From a front one sees fronts, and from
+/// a back backs, unless the point lies inside another solid.
+fn is_open(lit: &LitScene<'_>, point: &SidePoint) -> bool {
+    /// Sine and cosine of 60°.
+    const LEANING: [f32; 2] = [0.866, 0.5];
+    let frame = Frame::new(point.side.normal);
+    let ends = |direction: Vec3| {
+        let direction = frame.from_local(direction);
+        let ray = Ray::leaving(point.p, point.side.normal, direction, visibility::DIFFUSE);
+        lit.accel.intersect(&ray).is_some_and(|hit| {
+            let (ng, material) = lit.accel.triangle(hit.object, hit.primitive);
+            let from_inside = Side::met(ng, direction).back != point.side.back;
+            let reach = if from_inside { DEEPEST * point.cell_size } else { point.cell_size };
+            hit.t < reach && lit.materials[material].is_opaque()
+        })
+    };
+    let [aside, up] = LEANING;
+    let leaning = [(aside, 0.0), (0.0, aside), (-aside, 0.0), (0.0, -aside)];
+    !(ends(Vec3::Z) && leaning.into_iter().all(|(x, y)| ends(Vec3::new(x, y, up))))
 }
 
 /// Points beyond this share on either side do not decide how fine the cells are.

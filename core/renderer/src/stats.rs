@@ -51,6 +51,8 @@ pub struct PhotonCounts {
     pub emitted: u64,
     /// Landings that were stored.
     pub deposited: u64,
+    /// Landings that found no cell: rounding at slivers, or a flux that was not a number.
+    pub lost: u64,
 }
 
 /// Size of the pyramid.

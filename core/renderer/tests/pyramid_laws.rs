@@ -3,6 +3,7 @@
 
 use glam::{DQuat, DVec3, Vec3};
 use rgp_renderer::color::Rgb;
+use rgp_renderer::math::Side;
 use rgp_renderer::pyramid::{Accumulator, Grid, Layout, NormalClasses, Pyramid, SurfaceTriangle};
 
 /// Edge of a finest cell.
@@ -18,6 +19,14 @@ const CELLS: u64 = 27;
 const SIDE: f64 = CELLS as f64 * CELL;
 
 /// Three levels over a square from the origin of scene space to (SIDE, SIDE, 0), turned about the origin.
+fn front(normal: Vec3) -> Side {
+    Side { normal, back: false }
+}
+
+fn normal([a, b, c]: [DVec3; 3]) -> Vec3 {
+    (b - a).cross(c - a).normalize().as_vec3()
+}
+
 fn layout(turned: DQuat) -> Layout {
     let half = 16.0 * CELL;
     let center = turned * DVec3::new(0.5, 0.5, 0.0) * SIDE;
@@ -28,8 +37,9 @@ fn layout(turned: DQuat) -> Layout {
     assert_eq!(grid.levels.len(), 3);
     let p = |x: f64, y: f64| turned * DVec3::new(x, y, 0.0) * SIDE;
     let triangles = [[p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0)], [p(0.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)]];
-    let triangle = |i: usize| SurfaceTriangle { corners: triangles[i], glossy: false };
-    Layout::new(grid, NormalClasses::Six, 2, triangle, || true).expect("nobody cancels")
+    let triangle =
+        |i: usize| SurfaceTriangle { corners: triangles[i], normal: normal(triangles[i]), glossy: false };
+    Layout::new(grid, NormalClasses::Six, 2, triangle, |_| true, || true).expect("nobody cancels")
 }
 
 /// Photon `i` of `n`², evenly over the square.
@@ -44,7 +54,10 @@ fn constant_field(layout: &Layout, turned: DQuat, irradiance: f64, n: u64, photo
     let flux = Rgb::splat((irradiance * SIDE * SIDE / (n * n) as f64) as f32);
     for i in 0..n * n {
         let p = (turned * position(i, n)).as_vec3();
-        assert!(accumulator.deposit(0, p, (turned * DVec3::Z).as_vec3(), flux).is_some(), "{p} has no cell");
+        assert!(
+            accumulator.deposit(0, p, front((turned * DVec3::Z).as_vec3()), flux).is_some(),
+            "{p} has no cell"
+        );
     }
     Pyramid::build(accumulator, layout, photons_per_cell, |_, _| true, || true).expect("nobody cancels")
 }
@@ -78,7 +91,7 @@ fn flux_is_the_same_on_every_level() {
             let p = DVec3::new(random() * SIDE, random() * SIDE, 0.0);
             let flux = random().powi(8) as f32 / photons as f32;
             total += f64::from(flux);
-            accumulator.deposit(0, p.as_vec3(), Vec3::Z, Rgb::splat(flux));
+            accumulator.deposit(0, p.as_vec3(), front(Vec3::Z), Rgb::splat(flux));
         }
         assert_eq!((accumulator.deposited(), accumulator.lost()), (photons, 0));
         let pyramid = Pyramid::build(accumulator, &layout, 16, |_, _| true, || true).expect("nobody cancels");
@@ -98,9 +111,13 @@ fn a_constant_field_is_that_constant_at_every_level_and_place() {
         for level in 0..3 {
             for i in 0..101 * 101 {
                 let p = position(i, 101).as_vec3();
-                let found = pyramid.view(0).irradiance(p, pyramid.class(Vec3::Z), level).0[1];
+                let found = pyramid.view(0).irradiance(p, pyramid.class(front(Vec3::Z)), level).0[1];
                 assert!((found / 5.0 - 1.0).abs() < 1e-5, "level {level}, {p}: {found}");
-                let behind = pyramid.view(0).irradiance(p, pyramid.class(Vec3::NEG_Z), level);
+                let behind = pyramid.view(0).irradiance(
+                    p,
+                    pyramid.class(Side { normal: Vec3::NEG_Z, back: true }),
+                    level,
+                );
                 assert!(behind.is_black(), "light behind the square: {behind:?}");
             }
         }
@@ -120,7 +137,7 @@ fn a_constant_field_on_a_slanted_surface() {
         let (n, mut sum) = (101, 0.0);
         for i in 0..n * n {
             let p = (turned * position(i, n)).as_vec3();
-            let error = pyramid.view(0).irradiance(p, pyramid.class(normal), level).0[1] / 5.0 - 1.0;
+            let error = pyramid.view(0).irradiance(p, pyramid.class(front(normal)), level).0[1] / 5.0 - 1.0;
             assert!(error.abs() < photons.sqrt().recip(), "level {level}, {p}: {error}");
             sum += f64::from(error);
         }
@@ -137,7 +154,7 @@ fn the_order_of_deposits_does_not_matter() {
     let build = |order: &mut dyn Iterator<Item = u64>| {
         let accumulator = Accumulator::new(&layout, 1e16, None);
         for i in order {
-            accumulator.deposit(0, position(i, n).as_vec3(), Vec3::Z, flux(i));
+            accumulator.deposit(0, position(i, n).as_vec3(), front(Vec3::Z), flux(i));
         }
         Pyramid::build(accumulator, &layout, 16, |_, _| true, || true).expect("nobody cancels")
     };
@@ -145,8 +162,8 @@ fn the_order_of_deposits_does_not_matter() {
     for level in 0..3 {
         for i in 0..n * n {
             let p = position(i, n).as_vec3();
-            let [a, b] =
-                [&up, &down].map(|pyramid| pyramid.view(0).irradiance(p, pyramid.class(Vec3::Z), level));
+            let [a, b] = [&up, &down]
+                .map(|pyramid| pyramid.view(0).irradiance(p, pyramid.class(front(Vec3::Z)), level));
             assert_eq!(a, b, "level {level}, {p}");
         }
     }

@@ -6,6 +6,7 @@ use glam::Vec3;
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
 use crate::lit_scene::Surface;
+use crate::math::Side;
 use crate::sampling::Rng;
 
 /// Knows nothing, so that the gather follows everything.
@@ -19,7 +20,7 @@ impl Estimator for Path {
     const LEAST_DEPTH: u32 = 1000;
 
     #[inline]
-    fn place(&self, _p: Vec3, _ng: Vec3, _wo: Vec3, _footprint: Footprint) -> Option<()> {
+    fn place(&self, _p: Vec3, _side: Side, _wo: Vec3, _footprint: Footprint) -> Option<()> {
         None
     }
 

@@ -17,6 +17,7 @@ use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
 use crate::lit_scene::Surface;
+use crate::math::Side;
 use crate::sampling::Rng;
 
 /// Photons farther away than this are never near (scene units: the scene is one wide).
@@ -114,8 +115,8 @@ impl Estimator for PhotonMap {
     type Place = (Vec3, Vec3);
 
     #[inline]
-    fn place(&self, p: Vec3, ng: Vec3, _wo: Vec3, footprint: Footprint) -> Option<(Vec3, Vec3)> {
-        (!footprint.sharp).then_some((p, ng))
+    fn place(&self, p: Vec3, side: Side, _wo: Vec3, footprint: Footprint) -> Option<(Vec3, Vec3)> {
+        (!footprint.sharp).then_some((p, side.normal))
     }
 
     fn read(&self, &(p, ng): &(Vec3, Vec3)) -> Rgb {
@@ -125,7 +126,7 @@ impl Estimator for PhotonMap {
     /// The BSDF is evaluated for every photon.
     fn radiance(&self, surface: &Surface<'_>, footprint: Footprint, _rng: &mut Rng) -> Option<Rgb> {
         let bsdf = &surface.bsdf;
-        let (p, ng) = self.place(surface.p, bsdf.frame.ng, bsdf.wo(), footprint)?;
+        let (p, ng) = self.place(surface.p, bsdf.frame.side(), bsdf.wo(), footprint)?;
         let lobes = LobeSet::DIFFUSE | LobeSet::ROUGH;
         Some(self.disk(p).sum(ng, |flux, wi| flux * bsdf.eval(wi, lobes, TransportMode::Radiance)))
     }

@@ -10,6 +10,7 @@ use super::photon_map::PhotonMap;
 use super::photon_store::{Photon, Photons};
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
+use crate::math::Side;
 
 /// Of this many photons one has an irradiance.
 const SHARE: usize = 4;
@@ -83,8 +84,8 @@ impl Estimator for PrecomputedIrradiance {
     type Place = (Vec3, Vec3);
 
     #[inline]
-    fn place(&self, p: Vec3, ng: Vec3, _wo: Vec3, footprint: Footprint) -> Option<(Vec3, Vec3)> {
-        (!footprint.sharp).then_some((p, ng))
+    fn place(&self, p: Vec3, side: Side, _wo: Vec3, footprint: Footprint) -> Option<(Vec3, Vec3)> {
+        (!footprint.sharp).then_some((p, side.normal))
     }
 
     fn read(&self, &(p, ng): &(Vec3, Vec3)) -> Rgb {

@@ -16,6 +16,7 @@ use super::photon_map::PhotonMap;
 use super::photon_store::Photons;
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
+use crate::math::Side;
 
 /// Hits that are not split any more.
 const HITS: usize = 32;
@@ -154,8 +155,8 @@ impl Estimator for ReversePhotonMap {
     const DEFERS: bool = true;
 
     #[inline]
-    fn place(&self, p: Vec3, ng: Vec3, _wo: Vec3, footprint: Footprint) -> Option<(Vec3, Vec3)> {
-        (!footprint.sharp).then_some((p, ng))
+    fn place(&self, p: Vec3, side: Side, _wo: Vec3, footprint: Footprint) -> Option<(Vec3, Vec3)> {
+        (!footprint.sharp).then_some((p, side.normal))
     }
 
     fn read(&self, place: &(Vec3, Vec3)) -> Rgb {

@@ -9,6 +9,7 @@ use glam::{IVec3, Vec3};
 use super::photon_store::Photons;
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
+use crate::math::Side;
 
 /// Rings after which the search gives up; the light found by then is spread over all of them.
 const MAX_RINGS: i32 = 16;
@@ -87,7 +88,7 @@ impl Estimator for UniformGrid {
     type Place = Vec3;
 
     #[inline]
-    fn place(&self, p: Vec3, _ng: Vec3, _wo: Vec3, footprint: Footprint) -> Option<Vec3> {
+    fn place(&self, p: Vec3, _side: Side, _wo: Vec3, footprint: Footprint) -> Option<Vec3> {
         (!footprint.sharp).then_some(p)
     }
 

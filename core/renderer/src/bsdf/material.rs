@@ -156,6 +156,17 @@ impl PreparedMaterial {
         self.transparency
     }
 
+    /// True when no light passes through, straight or refracted.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        let passes = |closure: &PreparedClosure| match closure {
+            PreparedClosure::Glossy { .. } => false,
+            PreparedClosure::Glass(_) | PreparedClosure::Refraction { .. } => true,
+            PreparedClosure::Principled(principled) => principled.transmits(),
+        };
+        self.transparency.is_black() && !self.closures.iter().any(|(_, closure)| passes(closure))
+    }
+
     /// The albedo, where the material scatters as one constant Lambert lobe and nothing passes through it. A black
     /// material is one of albedo 0.
     #[must_use]

@@ -32,6 +32,7 @@ use glam::Vec3;
 use smallvec::SmallVec;
 
 use crate::color::Rgb;
+use crate::math::Side;
 use lobe::Lobe;
 pub use lobe::{DELTA_ALPHA, ROUGH_ALPHA};
 pub use material::{MaterialTable, PreparedMaterial};
@@ -103,6 +104,12 @@ pub struct ShadingFrame {
 }
 
 impl ShadingFrame {
+    /// The side of the surface that `wo` is on.
+    #[must_use]
+    pub const fn side(&self) -> Side {
+        Side { normal: self.ng, back: !self.entering }
+    }
+
     /// Turns both normals to the side of `wo` that the geometric one says.
     #[must_use]
     pub fn new(wo: Vec3, ng: Vec3, ns: Vec3) -> Self {

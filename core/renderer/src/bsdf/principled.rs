@@ -84,6 +84,11 @@ impl Principled {
         }
     }
 
+    /// True when light passes through.
+    pub(super) fn transmits(&self) -> bool {
+        self.metallic < 1.0 && self.transmission > NEGLIGIBLE
+    }
+
     /// The albedo where nothing but a diffuse lobe is left.
     pub(super) fn lambert(&self) -> Option<Rgb> {
         let bare = self.coat.is_none() && self.metallic <= NEGLIGIBLE && self.transmission <= NEGLIGIBLE;

@@ -113,7 +113,7 @@ impl<P: Copy> Target<'_, P> {
     ) -> Option<Rgb> {
         if E::DEFERS {
             let bsdf = &surface.bsdf;
-            let place = estimator.place(surface.p, bsdf.frame.ng, bsdf.wo(), footprint)?;
+            let place = estimator.place(surface.p, bsdf.frame.side(), bsdf.wo(), footprint)?;
             return Some(self.read(estimator, place, throughput * reflectance::<E>(surface)));
         }
         Some(throughput * estimator.radiance(surface, footprint, rng)?)

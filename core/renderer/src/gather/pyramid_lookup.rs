@@ -7,6 +7,7 @@ use crate::bsdf::LobeSet;
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
 use crate::lit_scene::{LitScene, Surface};
+use crate::math::Side;
 use crate::pyramid::{Place, View};
 use crate::sampling::Rng;
 
@@ -39,11 +40,11 @@ impl Estimator for PyramidLookup<'_> {
 
     /// `None` for rays too short for the cell they would read.
     #[inline(always)]
-    fn place(&self, p: Vec3, ng: Vec3, _wo: Vec3, footprint: Footprint) -> Option<Place> {
+    fn place(&self, p: Vec3, side: Side, _wo: Vec3, footprint: Footprint) -> Option<Place> {
         let level = self.pyramid.level_for(footprint.area());
         let near = footprint.travelled < self.retrace_distance * self.pyramid.nominal_cell_size(level);
         #[expect(clippy::cast_possible_truncation, reason = "classes and levels are few")]
-        let place = || Place { p, class: self.pyramid.class(ng) as u32, level: level as u32 };
+        let place = || Place { p, class: self.pyramid.class(side) as u32, level: level as u32 };
         (!near).then(place)
     }
 
@@ -64,7 +65,7 @@ impl Estimator for PyramidLookup<'_> {
         }
         let bsdf = &surface.bsdf;
         let level = self.pyramid.level_for(footprint.area());
-        let class = self.pyramid.class(bsdf.frame.ng);
+        let class = self.pyramid.class(bsdf.frame.side());
         let mut radiance = Rgb::BLACK;
         if bsdf.has(LobeSet::DIFFUSE) {
             let irradiance = self.pyramid.irradiance(surface.p, class, level);

@@ -3,6 +3,7 @@
 use crate::accel::{Hit, Ray};
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
+use crate::math::Side;
 
 use super::Gatherer;
 
@@ -22,10 +23,10 @@ impl<E: Estimator> Gatherer<'_, E> {
         }
         let (ng, material) = self.lit.accel.triangle(hit.object, hit.primitive);
         let albedo_over_pi = self.plain[material]?;
-        let facing = if ray.direction.dot(ng) > 0.0 { -ng } else { ng };
+        let side = Side::met(ng, ray.direction);
         let footprint = Footprint { solid_angle, travelled: hit.t, sharp: false };
         let place =
-            self.estimator.place(ray.origin + ray.direction * hit.t, facing, -ray.direction, footprint)?;
+            self.estimator.place(ray.origin + ray.direction * hit.t, side, -ray.direction, footprint)?;
         let reflectance = if E::READS_RADIANCE { Rgb::WHITE } else { albedo_over_pi };
         Some(Readable { place, reflectance })
     }

@@ -1,4 +1,4 @@
-//! Orthonormal frames and the offset of ray origins. Vectors are glam's.
+//! Orthonormal frames and sides of surfaces. Vectors are glam's.
 
 use glam::Vec3;
 
@@ -31,5 +31,30 @@ impl Frame {
     #[must_use]
     pub fn to_local(&self, v: Vec3) -> Vec3 {
         Vec3::new(v.dot(self.tangent), v.dot(self.bitangent), v.dot(self.normal))
+    }
+}
+
+/// One side of a surface.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Side {
+    /// Unit geometric normal, away from the surface on this side.
+    pub normal: Vec3,
+    /// Whether it is the back of the triangle, whose own normal points away.
+    pub back: bool,
+}
+
+impl Side {
+    /// The side of a triangle with the unit normal `ng` that a ray along `direction` meets.
+    #[must_use]
+    #[inline(always)]
+    pub fn met(ng: Vec3, direction: Vec3) -> Self {
+        let back = direction.dot(ng) > 0.0;
+        Self { normal: if back { -ng } else { ng }, back }
+    }
+
+    /// Front and back of a triangle with the unit normal `ng`.
+    #[must_use]
+    pub fn both(ng: Vec3) -> [Self; 2] {
+        [Self { normal: ng, back: false }, Self { normal: -ng, back: true }]
     }
 }

@@ -26,7 +26,7 @@ impl PhotonSink for PyramidDeposits<'_> {
     #[inline]
     fn land(&self, (): &mut (), landing: &Landing<'_>) {
         let (surface, flux) = (landing.surface, landing.flux);
-        let cell = self.accumulator.deposit(landing.set, surface.p, surface.bsdf.frame.ng, flux);
+        let cell = self.accumulator.deposit(landing.set, surface.p, surface.bsdf.frame.side(), flux);
         let Some(cell) = cell.filter(|_| landing.glossy) else { return };
         let material = self.lit.accel.material(surface.hit.object, surface.hit.primitive);
         let tint = self.lit.materials[material].specular_tint();

@@ -12,7 +12,7 @@ use glam::Vec3;
 use super::bins::DirectionBins;
 use super::layout::Layout;
 use crate::color::Rgb;
-use crate::math::Frame;
+use crate::math::{Frame, Side};
 
 /// Sets of photons.
 pub const SETS: usize = 2;
@@ -77,9 +77,9 @@ impl<'a> Accumulator<'a> {
         }
     }
 
-    /// Adds a photon of a set that lands at `p` on the side of a surface whose geometric normal is `normal`; gives the cell.
-    pub fn deposit(&self, set: usize, p: Vec3, normal: Vec3, flux: Rgb) -> Option<Landing> {
-        let class = self.layout.classes.of(normal);
+    /// Adds a photon of a set that lands at `p` on one side of a surface; gives the cell.
+    pub fn deposit(&self, set: usize, p: Vec3, side: Side, flux: Rgb) -> Option<Landing> {
+        let class = self.layout.classes.of(side);
         let place = self.layout.find(p, class).filter(|_| flux.is_finite());
         let Some((level, place)) = place else {
             self.lost.fetch_add(1, Ordering::Relaxed);

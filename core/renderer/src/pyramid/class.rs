@@ -1,9 +1,12 @@
 //! Normal classes: which surfaces inside one cell are kept apart.
 //!
-//! Six faces of a cube; optionally nine parts of each, the middle one holding what is aligned with the axis. The class
-//! only says where light is stored; it is never the frame of the direction bins.
+//! Six faces of a cube; optionally nine parts of each, the middle one holding what is aligned with the axis. The front of
+//! a triangle, where its normal points, and its back are kept apart: the inside of a board thinner than a cell must not
+//! count as lit surface of its top. The class only says where light is stored; it is never the frame of the direction bins.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
+
+use crate::math::Side;
 
 /// How many classes there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,16 +24,36 @@ impl NormalClasses {
     /// Number of classes.
     #[must_use]
     pub const fn count(self) -> usize {
+        2 * self.directions()
+    }
+
+    /// Classes of fronts, the first ones.
+    pub(super) const fn directions(self) -> usize {
         match self {
             Self::Six => 6,
             Self::FiftyFour => 54,
         }
     }
 
-    /// Class of a unit normal.
+    /// Class of a side of a surface.
     #[must_use]
-    #[inline]
-    pub fn of(self, normal: Vec3) -> usize {
+    #[inline(always)]
+    pub fn of(self, side: Side) -> usize {
+        self.direction(side.normal) + if side.back { self.directions() } else { 0 }
+    }
+
+    /// Of the front of a surface: the class of the fronts that face it.
+    #[must_use]
+    pub const fn facing(self, front: usize) -> usize {
+        match self {
+            Self::Six => front ^ 1,
+            // Both ratios change their sign.
+            Self::FiftyFour => ((front / 9) ^ 1) * 9 + 8 - front % 9,
+        }
+    }
+
+    #[inline(always)]
+    fn direction(self, normal: Vec3) -> usize {
         let a = normal.abs();
         // Ties go to the earlier axis.
         let axis = if a.x >= a.y - SNAP && a.x >= a.z - SNAP {
@@ -58,13 +81,6 @@ impl NormalClasses {
             }
         }
     }
-
-    /// Classes of the two sides of a surface with this (unnormalised) normal.
-    #[must_use]
-    pub fn of_sides(self, normal: DVec3) -> [usize; 2] {
-        let n = normal.normalize_or(DVec3::Z).as_vec3();
-        [self.of(n), self.of(-n)]
-    }
 }
 
 #[cfg(test)]
@@ -79,8 +95,12 @@ mod tests {
                 let z = 1.0 - 2.0 * (i as f32 + 0.5) / 20_000.0;
                 let (sin, cos) = (i as f32 * 2.399_963).sin_cos();
                 let n = Vec3::new(cos * (1.0 - z * z).sqrt(), sin * (1.0 - z * z).sqrt(), z);
-                assert_ne!(classes.of(n), classes.of(-n), "{n}");
-                used[classes.of(n)] = true;
+                let [front, back] = Side::both(n).map(|side| classes.of(side));
+                assert_ne!(front, classes.of(Side { normal: -n, back: false }), "{n}");
+                assert_ne!(front, classes.of(Side { normal: n, back: true }), "{n}");
+                assert_eq!(classes.facing(front), classes.of(Side { normal: -n, back: false }), "{n}");
+                used[front] = true;
+                used[back] = true;
             }
             assert!(used.iter().all(|&u| u));
         }
@@ -98,7 +118,9 @@ mod tests {
             ] {
                 let n = n.normalize();
                 for noise in [Vec3::new(1e-6, -1e-6, 2e-6), Vec3::new(-3e-6, 1e-6, 1e-6)] {
-                    assert_eq!(classes.of(n), classes.of((n + noise).normalize()), "{n}");
+                    let [exact, rounded] =
+                        [n, (n + noise).normalize()].map(|normal| classes.of(Side { normal, back: false }));
+                    assert_eq!(exact, rounded, "{n}");
                 }
             }
         }

@@ -10,16 +10,18 @@ type Polygon = ArrayVec<DVec3, 12>;
 
 /// What lies of a triangle in one cell.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+pub(super) struct Part<'a> {
     /// Area (square scene units).
     pub(super) area: f64,
     /// Center of gravity, relative to the lattice's origin.
     pub(super) centroid: DVec3,
+    /// Corners, relative to the lattice's origin.
+    pub(super) corners: &'a [DVec3],
 }
 
 /// Calls `add(level, cell, part)` for every cell in which light of this triangle is stored: the finest that exist where
 /// the parts of the triangle lie. The areas add up to the triangle's (Sutherland and Hodgman 1974, halving cells).
-pub(super) fn clip_triangle(grid: &Grid, corners: [DVec3; 3], add: &mut impl FnMut(usize, IVec3, Part)) {
+pub(super) fn clip_triangle(grid: &Grid, corners: [DVec3; 3], add: &mut impl FnMut(usize, IVec3, Part<'_>)) {
     let offsets = corners.map(|p| grid.offset_f64(p));
     let polygon: Polygon = offsets.into_iter().collect();
     let (low, high) = extent(&polygon);
@@ -54,7 +56,7 @@ fn descend(
     level: usize,
     lattice: IVec3,
     polygon: Polygon,
-    add: &mut impl FnMut(usize, IVec3, Part),
+    add: &mut impl FnMut(usize, IVec3, Part<'_>),
 ) {
     if polygon.len() < 3 {
         return;
@@ -128,7 +130,7 @@ fn extent(polygon: &Polygon) -> (DVec3, DVec3) {
     polygon.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
 }
 
-fn measure(polygon: &Polygon) -> Part {
+fn measure(polygon: &Polygon) -> Part<'_> {
     let a = polygon[0];
     let (mut area, mut moment) = (0.0, DVec3::ZERO);
     for edge in polygon.windows(2).skip(1) {
@@ -136,7 +138,7 @@ fn measure(polygon: &Polygon) -> Part {
         area += triangle;
         moment += (a + edge[0] + edge[1]) * (triangle / 3.0);
     }
-    Part { area, centroid: if area > 0.0 { moment / area } else { a } }
+    Part { area, centroid: if area > 0.0 { moment / area } else { a }, corners: polygon }
 }
 
 #[cfg(test)]

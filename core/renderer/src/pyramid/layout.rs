@@ -5,17 +5,31 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::class::NormalClasses;
-use super::clip::clip_triangle;
+use super::clip::{Part, clip_triangle};
 use super::grid::Grid;
 use super::index::{CellKey, LevelIndex};
+use crate::math::Side;
 
 /// One triangle as the pyramid sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceTriangle {
     /// Corners in scene space.
     pub corners: [DVec3; 3],
+    /// Unit normal: where the front looks.
+    pub normal: Vec3,
     /// True when the light leaving it is needed by direction.
     pub glossy: bool,
+}
+
+/// A point on one side of a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct SidePoint {
+    /// Where, in scene space.
+    pub p: Vec3,
+    /// Which side.
+    pub side: Side,
+    /// Edge of its cell (scene units).
+    pub cell_size: f32,
 }
 
 /// Surface inside one cell and normal class. Sums are integers, so that their order does not matter.
@@ -39,6 +53,37 @@ impl CellSurface {
             self.centroid[c] += other.centroid[c];
         }
         self.glossy_area += other.glossy_area;
+    }
+
+    /// Takes away `area` of a surface that is the same everywhere.
+    #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "a share of the area")]
+    fn split_off(&mut self, area: i64) -> Self {
+        let share = |value: i64| (value as f64 * (area as f64 / self.area.max(1) as f64)).round() as i64;
+        let taken = Self {
+            area,
+            normal: self.normal.map(share),
+            centroid: self.centroid.map(share),
+            glossy_area: share(self.glossy_area),
+        };
+        self.area -= taken.area;
+        for c in 0..3 {
+            self.normal[c] -= taken.normal[c];
+            self.centroid[c] -= taken.centroid[c];
+        }
+        self.glossy_area -= taken.glossy_area;
+        taken
+    }
+
+    /// True when both are flat, look at each other and lie in one plane.
+    fn touches(&self, other: &Self, cell_size: f32) -> bool {
+        const FLAT: f64 = 0.9999;
+        let direction = |surface: &Self| DVec3::from(surface.normal.map(|c| c as f64)) / surface.area as f64;
+        if self.area == 0 || other.area == 0 {
+            return false;
+        }
+        let (a, b) = (direction(self), direction(other));
+        let distance = (self.centroid() - other.centroid()).as_dvec3().dot(a).abs();
+        a.length() > FLAT && b.length() > FLAT && a.dot(b) < -FLAT && distance < 1e-3 * f64::from(cell_size)
     }
 
     /// Center of gravity, relative to the lattice's origin.
@@ -83,30 +128,43 @@ pub struct Layout {
 /// Area unit: sums over the whole scene stay exact in 63 bits, and a 10⁻¹² part of the scene still counts.
 const AREA_BITS: i32 = 48;
 
-type Cells = FxHashMap<(u32, CellKey), CellSurface>;
+/// Surface that light can reach, and surface that is hidden.
+type Cells = FxHashMap<(u32, CellKey), [CellSurface; 2]>;
+
+/// Parts of a triangle below this share of a cell's face are open or hidden as a whole.
+const SMALL_PART: f64 = 0.1;
+
+/// Where less than this part of a cell's surface is open, all of it counts: what little light there is has to land.
+const LEAST_OPEN: i64 = 8;
 
 impl Layout {
-    /// Measures `count` triangles, given by index; `None` once `keep_going` says no.
+    /// Measures `count` triangles, given by index. `open` tells whether light can come to a point on the side of a surface:
+    /// hidden surface, such as the floor under a box, is left out beside open one. `None` once `keep_going` says no.
     #[must_use]
     pub fn new(
         grid: Grid,
         classes: NormalClasses,
         count: usize,
         triangle: impl Fn(usize) -> SurfaceTriangle + Sync,
+        open: impl Fn(&SidePoint) -> bool + Sync,
         keep_going: impl Fn() -> bool + Sync,
     ) -> Option<Self> {
         let total: f64 = (0..count).into_par_iter().map(|i| quantized_area(triangle(i).corners)).sum();
         let area_unit = (total.max(f64::MIN_POSITIVE).log2().ceil() - f64::from(AREA_BITS)).exp2();
         let add = |mut cells: Cells, i: usize| {
-            measure(&grid, classes, area_unit, &triangle(i), &mut cells);
+            let mut add = |level: usize, cell: IVec3, class: usize, surfaces: [CellSurface; 2]| {
+                let key = CellKey::new(&grid.levels[level], cell, class);
+                add_surfaces(cells.entry((level as u32, key)).or_default(), &surfaces);
+            };
+            measure(&grid, classes, area_unit, &triangle(i), &open, &mut add);
             keep_going().then_some(cells)
         };
         let merge = |mut a: Cells, mut b: Cells| {
             if a.len() < b.len() {
                 std::mem::swap(&mut a, &mut b);
             }
-            for (key, surface) in b {
-                a.entry(key).or_default().add(&surface);
+            for (key, surfaces) in b {
+                add_surfaces(a.entry(key).or_default(), &surfaces);
             }
             keep_going().then_some(a)
         };
@@ -175,40 +233,97 @@ fn quantized_area(corners: [DVec3; 3]) -> f64 {
     (area * 2.0_f64.powi(AREA_BITS)).round() * 2.0_f64.powi(-AREA_BITS)
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "quantised on purpose")]
+fn add_surfaces(sums: &mut [CellSurface; 2], surfaces: &[CellSurface; 2]) {
+    for (sum, surface) in sums.iter_mut().zip(surfaces) {
+        sum.add(surface);
+    }
+}
+
 fn measure(
     grid: &Grid,
     classes: NormalClasses,
     area_unit: f64,
     triangle: &SurfaceTriangle,
-    cells: &mut Cells,
+    open: &impl Fn(&SidePoint) -> bool,
+    add: &mut impl FnMut(usize, IVec3, usize, [CellSurface; 2]),
 ) {
-    let [a, b, c] = triangle.corners;
-    let normal = (b - a).cross(c - a).normalize_or_zero();
-    let sides = classes.of_sides(normal);
+    let sides = Side::both(triangle.normal);
     clip_triangle(grid, triangle.corners, &mut |level, cell, part| {
-        let units = part.area / area_unit;
-        let centroid = (part.centroid * units).to_array().map(|c| c.round() as i64);
-        for (class, sign) in sides.into_iter().zip([1.0, -1.0]) {
-            let area = units.round() as i64;
-            let surface = CellSurface {
-                area,
-                normal: (normal * (sign * units)).to_array().map(|c| c.round() as i64),
-                centroid,
-                glossy_area: if triangle.glossy { area } else { 0 },
-            };
-            if surface.area > 0 {
-                let key = CellKey::new(&grid.levels[level], cell, class);
-                cells.entry((level as u32, key)).or_default().add(&surface);
+        for side in sides {
+            let cell_size = grid.levels[level].cell_size;
+            let is_open =
+                |offset: DVec3| open(&SidePoint { p: grid.position(offset.as_vec3()), side, cell_size });
+            let share = open_share(&part, f64::from(cell_size), is_open);
+            let surface = |share: f64| part_surface(&part, side.normal, share / area_unit, triangle.glossy);
+            let surfaces = [surface(share), surface(1.0 - share)];
+            if surfaces.iter().any(|surface| surface.area > 0) {
+                add(level, cell, classes.of(side), surfaces);
             }
         }
     });
 }
 
+/// Share of a part that is open: of small parts all or nothing, of large ones by the triangles around their center.
+fn open_share(part: &Part<'_>, cell_size: f64, is_open: impl Fn(DVec3) -> bool) -> f64 {
+    if part.area < SMALL_PART * cell_size * cell_size {
+        return f64::from(u8::from(is_open(part.centroid)));
+    }
+    let corners = part.corners;
+    let around = (0..corners.len()).map(|i| {
+        let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
+        let area = 0.5 * (a - part.centroid).cross(b - part.centroid).length();
+        if is_open((a + b + part.centroid) / 3.0) { area } else { 0.0 }
+    });
+    (around.sum::<f64>() / part.area).min(1.0)
+}
+
+/// A part of a triangle in `units` area units per square scene unit.
+#[expect(clippy::cast_possible_truncation, reason = "quantised on purpose")]
+fn part_surface(part: &Part<'_>, normal: Vec3, units: f64, glossy: bool) -> CellSurface {
+    let units = part.area * units;
+    let area = units.round() as i64;
+    CellSurface {
+        area,
+        normal: (normal.as_dvec3() * units).to_array().map(|c| c.round() as i64),
+        centroid: (part.centroid * units).to_array().map(|c| c.round() as i64),
+        glossy_area: if glossy { area } else { 0 },
+    }
+}
+
+/// Hides the surface where two flat fronts of a cell lie on each other, such as a box's bottom and the floor.
+fn hide_contacts(grid: &Grid, classes: NormalClasses, cells: &mut Cells) {
+    let contact = |(&(level, key), [front, _]): (&(u32, CellKey), &[CellSurface; 2])| {
+        let level_box = &grid.levels[level as usize];
+        let (cell, class) = key.cell(level_box);
+        if class >= classes.directions() || classes.facing(class) < class {
+            return None;
+        }
+        let other = (level, CellKey::new(level_box, cell, classes.facing(class)));
+        let [facing, _] = cells.get(&other)?;
+        let is_contact = front.touches(facing, level_box.cell_size);
+        is_contact.then(|| ((level, key), other, front.area.min(facing.area)))
+    };
+    let contacts: Vec<_> = cells.iter().filter_map(contact).collect();
+    for (a, b, area) in contacts {
+        for key in [a, b] {
+            if let Some([open, hidden]) = cells.get_mut(&key) {
+                hidden.add(&open.split_off(area));
+            }
+        }
+    }
+}
+
 /// Sorts the cells by level and adds every cell's ancestors.
 fn levels(grid: &Grid, classes: NormalClasses, cells: Cells) -> Vec<LevelLayout> {
     let mut by_level: Vec<FxHashMap<CellKey, CellSurface>> = vec![FxHashMap::default(); grid.levels.len()];
-    for ((level, key), surface) in cells {
+    let mut cells = cells;
+    hide_contacts(grid, classes, &mut cells);
+    for ((level, key), [mut surface, hidden]) in cells {
+        if surface.area * LEAST_OPEN < hidden.area {
+            surface.add(&hidden);
+        } else if surface.glossy_area * LEAST_OPEN < hidden.glossy_area {
+            surface.glossy_area += hidden.glossy_area;
+        }
         by_level[level as usize].insert(key, surface);
     }
     for level in (1..grid.levels.len()).rev() {
@@ -249,8 +364,14 @@ mod tests {
         ];
         let half = DVec3::splat(0.4);
         let grid = Grid::new([-half * 0.2, half * 0.2], [-half, half], 20, DVec3::ZERO);
-        let triangle = |i: usize| SurfaceTriangle { corners: triangles[i], glossy: i == 1 };
-        let layout = Layout::new(grid, NormalClasses::Six, triangles.len(), triangle, || true).unwrap();
+        let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).normalize().as_vec3();
+        let triangle = |i: usize| SurfaceTriangle {
+            corners: triangles[i],
+            normal: normal(triangles[i]),
+            glossy: i == 1,
+        };
+        let open = |_: &SidePoint| true;
+        let layout = Layout::new(grid, NormalClasses::Six, triangles.len(), triangle, open, || true).unwrap();
         let exact: f64 = triangles.iter().map(|[a, b, c]| (b - a).cross(c - a).length()).sum();
         for (level, cells) in layout.levels.iter().enumerate().take(1) {
             let sum: i64 = cells.surfaces.iter().map(|s| s.area).sum();
@@ -259,5 +380,37 @@ mod tests {
         }
         assert!(layout.levels[layout.grid.finest()].surfaces.iter().any(|s| s.glossy_area > 0));
         assert!(layout.levels[layout.grid.finest()].surfaces.iter().any(|s| s.glossy_area == 0));
+    }
+
+    /// A floor of 3 × 3 units, partly under a box of 1 × 0.5; all of it in one cell of 8.
+    #[test]
+    fn what_a_box_stands_on_does_not_count() {
+        let p = |x: f64, y: f64| DVec3::new(x, y, 0.0) * 0.05;
+        let rectangle =
+            |x: f64, y: f64| [[p(0.0, 0.0), p(x, 0.0), p(x, y)], [p(0.0, 0.0), p(x, y), p(0.0, y)]];
+        let floor = rectangle(3.0, 3.0);
+        let bottom = rectangle(1.0, 0.5).map(|[a, b, c]| [a, c, b]);
+        let triangles = [floor[0], floor[1], bottom[0], bottom[1]];
+        let triangle = |i: usize| {
+            let normal = if i < 2 { Vec3::Z } else { Vec3::NEG_Z };
+            SurfaceTriangle { corners: triangles[i], normal, glossy: false }
+        };
+        let half = DVec3::splat(0.2);
+        let grid = Grid::new([-half, half], [-half, half], 1, DVec3::ZERO);
+        let area = |open: &(dyn Fn(&SidePoint) -> bool + Sync), side: Side| {
+            let layout = Layout::new(grid.clone(), NormalClasses::Six, 4, triangle, open, || true).unwrap();
+            let (level, place) = layout.find(p(2.0, 2.0).as_vec3(), layout.classes.of(side)).unwrap();
+            layout.levels[level].surfaces[place].area as f64 * layout.area_unit / 0.05_f64.powi(2)
+        };
+        let [top, below] = Side::both(Vec3::Z);
+        let expect =
+            |found: f64, known: f64| assert!((found - known).abs() < 1e-6, "{found} against {known}");
+        expect(area(&|_| true, top), 8.5);
+        // The back of the bottom faces up too, and is no part of the floor; of the floor's own back nothing is hidden.
+        expect(area(&|_| true, below), 9.0);
+        expect(area(&|_| true, Side { normal: Vec3::Z, back: true }), 0.5);
+        // What is hidden counts where nothing is open.
+        expect(area(&|_| false, top), 9.0);
+        expect(area(&|point| point.p.x > 0.05, Side { normal: Vec3::NEG_Z, back: true }), 4.5 + 4.5);
     }
 }

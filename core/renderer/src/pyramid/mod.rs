@@ -32,10 +32,11 @@ pub use accumulator::{Accumulator, Landing, SETS};
 pub use bins::DirectionBins;
 pub use class::NormalClasses;
 pub use grid::Grid;
-pub use layout::{Layout, SurfaceTriangle};
+pub use layout::{Layout, SidePoint, SurfaceTriangle};
 pub use lookup::{Place, View};
 
 use crate::color::Rgb;
+use crate::math::Side;
 use bins::BinStore;
 use index::LevelIndex;
 
@@ -134,11 +135,11 @@ impl Pyramid {
         self.grid.levels[self.grid.finest()].cell_size
     }
 
-    /// Normal class of a surface seen from the side of `normal` (unit, geometric).
+    /// Normal class of one side of a surface.
     #[must_use]
     #[inline(always)]
-    pub fn class(&self, normal: Vec3) -> usize {
-        self.classes.of(normal)
+    pub fn class(&self, side: Side) -> usize {
+        self.classes.of(side)
     }
 
     /// Level whose cells match a footprint (paper, eq. 5), one finer: half the blur for no more noise. `footprint` is the

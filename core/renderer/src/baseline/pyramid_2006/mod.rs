@@ -20,7 +20,7 @@ use super::photon_store::Photons;
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
 use crate::lit_scene::LitScene;
-use crate::math::Frame;
+use crate::math::{Frame, Side};
 use bins::{Bins, SharedExponent};
 use build::Builder;
 
@@ -168,9 +168,9 @@ impl Estimator for Pyramid2006 {
 
     #[inline]
     #[expect(clippy::cast_possible_truncation, reason = "six groups, some tens of levels")]
-    fn place(&self, p: Vec3, ng: Vec3, wo: Vec3, footprint: Footprint) -> Option<Place> {
+    fn place(&self, p: Vec3, side: Side, wo: Vec3, footprint: Footprint) -> Option<Place> {
         let level = self.lattice.level(footprint.area()) as u8;
-        (!footprint.sharp).then_some(Place { p, wo, group: group_of(ng) as u8, level })
+        (!footprint.sharp).then_some(Place { p, wo, group: group_of(side.normal) as u8, level })
     }
 
     fn read(&self, place: &Place) -> Rgb {
