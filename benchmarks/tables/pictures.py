@@ -60,7 +60,7 @@ def _error_chart(subject: Subject, rows: Rows, title: str, published: dict[str, 
     ]
     return Chart(
         title=subject.name,
-        note=f"RMS of the indirect light; the paper's scene is {subject.published.name}",
+        note=f"RMS of the indirect light, against the photon map unless it says truth; paper: {subject.published.name}",
         x=Axis(title, ticks=sorted({x for line in series for x, _ in line.points})),
         y=Axis("RMS (% of the brightest pixel)", is_log=True),
         series=series,

@@ -45,7 +45,7 @@ FULL = Scale(
     rays=paper.RAYS,
     many_rays=1024,
     photon_share=1.0,
-    truth_seconds=90.0,
+    truth_seconds=120.0,
     bins=("2x4", "4x8", "8x16", "16x32"),
     finest=(16, 32, 64, 128, 256, 512),
 )
