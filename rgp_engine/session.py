@@ -73,8 +73,8 @@ class RenderSession:
         scene = exported.finish((b_result.resolution_x, b_result.resolution_y))
         self._log.add_records(scene.problems)
         settings = core_settings(self._b_depsgraph.scene_eval)
-        self._error_target = settings["gather"]["error_target"]
         core_session = native.core().Session(scene, settings, str(native.embree_library()))
+        self._error_target = settings["gather"]["error_target"]
         core_session.start()
         try:
             self._watch(core_session, b_result)

@@ -15,12 +15,6 @@ SETTINGS = (
 )  # fmt: skip
 
 
-@pytest.fixture(autouse=True)
-def _registered_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The command line registers the engine, which in this process is done already."""
-    monkeypatch.setattr("rgp_engine.cli.render.register", lambda: None)
-
-
 def render(scene: str, folder: Path, *arguments: str) -> dict[str, object]:
     """Channels of what the command line writes."""
     path = folder / "picture.exr"
