@@ -13,11 +13,10 @@ import numpy as np
 import pytest
 
 from rgp_engine.__main__ import main
+from rgp_engine.accuracy.error import CLIPPED_AT
 from rgp_engine.cli import exr
 from scenes import common
 
-CLIPPED_AT = 8.0
-"""Times the mean, as in the core's statistics."""
 FACTOR = 1.5
 """Halves of a well-spread set of rays differ more than independent ones: the error is stated rather too high."""
 TRUTH = ("photon_pass.photon_count=4000000", "gather.rays=1024", "gather.camera_samples=256")
