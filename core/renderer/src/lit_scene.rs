@@ -60,7 +60,8 @@ impl<'a> LitScene<'a> {
             return (Ray { origin: origin.as_vec3(), direction, mask }, 0.0);
         }
         let d = direction.as_dvec3();
-        let (to_low, to_high) = ((low - margin - origin) / d, (high + margin - origin) / d);
+        let per_d = d.recip();
+        let (to_low, to_high) = ((low - margin - origin) * per_d, (high + margin - origin) * per_d);
         let entry = to_low.min(to_high).max_element();
         let moved = if entry.is_finite() && entry > 0.0 { entry } else { 0.0 };
         #[expect(clippy::cast_possible_truncation, reason = "rays are traced in f32")]

@@ -1,12 +1,13 @@
 //! One lobe: a shape of scattering with its weight, class and directional albedo.
 
-use std::f32::consts::{FRAC_1_PI, TAU};
+use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
 use super::{LobeSet, ShadingFrame, fresnel, ggx};
 use crate::color::Rgb;
 use crate::math::Frame;
+use crate::sampling::cosine_hemisphere;
 
 /// GGX alpha from which on a reflection counts as [`LobeSet::ROUGH`] and is read from direction bins.
 pub const ROUGH_ALPHA: f32 = 0.25;
@@ -143,12 +144,7 @@ impl Lobe {
             basis.from_local(ggx::sample_visible_normal(alpha, basis.to_local(wo), u))
         };
         match self.shape {
-            Shape::Lambert => {
-                let (sin_phi, cos_phi) = (TAU * u[0]).sin_cos();
-                let sin = u[1].sqrt();
-                let local = Vec3::new(sin * cos_phi, sin * sin_phi, (1.0 - u[1]).max(0.0).sqrt());
-                Some(Frame::new(frame.ns).from_local(local))
-            }
+            Shape::Lambert => Some(Frame::new(frame.ns).from_local(cosine_hemisphere(u))),
             Shape::Reflection { alpha } => {
                 let h = microfacet(alpha);
                 Some((h * (2.0 * wo.dot(h)) - wo).normalize())

@@ -221,8 +221,9 @@ impl Bsdf<'_> {
         self.eval_with_pdf(wi, set).1
     }
 
-    /// Value in radiance mode and density.
-    fn eval_with_pdf(&self, wi: Vec3, set: LobeSet) -> (Rgb, f32) {
+    /// [`Bsdf::eval`] in radiance mode and [`Bsdf::pdf`], for little more than one of them.
+    #[must_use]
+    pub fn eval_with_pdf(&self, wi: Vec3, set: LobeSet) -> (Rgb, f32) {
         let (side_s, side_g) = (wi.dot(self.frame.ns), wi.dot(self.frame.ng));
         let (above, below) = (side_s > 0.0 && side_g > 0.0, side_s < 0.0 && side_g < 0.0);
         let (mut value, mut pdf, mut total) = (Rgb::BLACK, 0.0, 0.0);

@@ -7,6 +7,10 @@ use crate::settings::PixelFilter;
 pub(super) struct Filter {
     /// Distance from the pixel's centre at which it ends (pixels).
     radius: f32,
+    /// Pixels on either side whose samples can count.
+    reach: usize,
+    /// Steps of the table per pixel.
+    steps_per_pixel: f32,
     /// Weights from the centre to the radius.
     table: Vec<f32>,
 }
@@ -23,19 +27,22 @@ impl Filter {
             PixelFilter::BlackmanHarris => (width, blackman_harris),
         };
         let table = (0..=STEPS).map(|i| weight(i as f64 / STEPS as f64) as f32).collect();
-        Self { radius, table }
+        let reach = (radius + 0.5).ceil() as usize - 1;
+        Self { radius, reach, steps_per_pixel: STEPS as f32 / radius, table }
     }
 
     /// Pixels on either side whose samples can count.
-    pub(super) fn reach(&self) -> usize {
-        (self.radius + 0.5).ceil() as usize - 1
+    pub(super) const fn reach(&self) -> usize {
+        self.reach
     }
 
     /// Weights, along one axis, of a sample at `offset` from the centre of a pixel (pixels), for the pixels from `reach`
     /// before to `reach` behind it.
     pub(super) fn weigh(&self, offset: f32, weights: &mut [f32]) {
-        for (pixel, weight) in weights.iter_mut().enumerate() {
-            *weight = self.weight(offset + self.reach() as f32 - pixel as f32);
+        let mut d = offset + self.reach as f32;
+        for weight in weights {
+            *weight = self.weight(d);
+            d -= 1.0;
         }
     }
 
@@ -45,7 +52,7 @@ impl Filter {
         if !(-self.radius..self.radius).contains(&d) {
             return 0.0;
         }
-        let at = d.abs() / self.radius * STEPS as f32;
+        let at = d.abs() * self.steps_per_pixel;
         let index = (at as usize).min(STEPS - 1);
         let t = at - index as f32;
         self.table[index] * (1.0 - t) + self.table[index + 1] * t

@@ -3,7 +3,7 @@
 use std::f32::consts::FRAC_1_PI;
 
 use crate::accel::{OFFSET, Ray};
-use crate::bsdf::{LobeSet, TransportMode};
+use crate::bsdf::LobeSet;
 use crate::color::Rgb;
 use crate::light::DirectSample;
 use crate::lit_scene::{LitScene, Surface, lobes_lit};
@@ -58,14 +58,14 @@ pub(super) fn shadow_ray(
 ) -> Option<ShadowRay> {
     let bsdf = &surface.bsdf;
     let lit = lobes.without(LobeSet::ALL.without(lobes_lit(sample.visibility)));
-    let f = bsdf.eval(sample.wi, lit, TransportMode::Radiance);
+    let (f, pdf_lit) = bsdf.eval_with_pdf(sample.wi, lit);
     if f.is_black() {
         return None;
     }
     let weight = if sample.is_delta {
         1.0
     } else {
-        let pdf_bsdf = bsdf.pdf(sample.wi, lobes);
+        let pdf_bsdf = if lit == lobes { pdf_lit } else { bsdf.pdf(sample.wi, lobes) };
         power_heuristic(shares.light * sample.pdf_solid_angle, shares.bsdf * pdf_bsdf)
     };
     let cos = sample.wi.dot(bsdf.frame.ns).abs();

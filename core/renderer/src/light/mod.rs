@@ -28,7 +28,7 @@ use crate::scene::Scene;
 use distant::SceneBall;
 use emitter::MeshEmitter;
 pub use proxy::LampProxy;
-use select::Cdf;
+use select::{Cdf, Choice};
 use shape::{Light, Shape};
 use world::WorldLight;
 
@@ -231,10 +231,7 @@ impl Lights {
     #[must_use]
     pub fn sample_direct(&self, p: Vec3, u: [f32; 3]) -> Option<DirectSample> {
         let [choice, position @ ..] = u;
-        let chosen = match self.weights(p) {
-            Some(weights) => select::choose(&weights, choice)?,
-            None => self.by_power.as_ref()?.choose(choice),
-        };
+        let chosen = self.choose(p, choice)?;
         let light = &self.lights[chosen.index];
         let sample = match &light.shape {
             Shape::Point(lamp) => lamp.sample(p, position)?,
@@ -310,8 +307,22 @@ impl Lights {
             .then(|| self.lights.iter().map(|light| light.irradiance_estimate(p)).collect())
     }
 
-    /// Probability with which [`Lights::sample_direct`] from `p` chooses light `index`.
+    /// The light that `u` in 0..1 chooses to light `p`.
+    fn choose(&self, p: Vec3, u: f32) -> Option<Choice> {
+        if self.lights.len() == 1 {
+            return Some(Choice { index: 0, probability: 1.0, rest: u });
+        }
+        match self.weights(p) {
+            Some(weights) => select::choose(&weights, u),
+            None => Some(self.by_power.as_ref()?.choose(u)),
+        }
+    }
+
+    /// Probability with which [`Lights::choose`] chooses light `index` for `p`.
     fn choice_probability(&self, p: Vec3, index: usize) -> f32 {
+        if self.lights.len() == 1 {
+            return 1.0;
+        }
         match self.weights(p) {
             Some(weights) => select::probability(&weights, index),
             None => self.by_power.as_ref().map_or(0.0, |cdf| cdf.probability(index) as f32),
