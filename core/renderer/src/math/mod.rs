@@ -49,7 +49,7 @@ impl Side {
     #[inline(always)]
     pub fn met(ng: Vec3, direction: Vec3) -> Self {
         let back = direction.dot(ng) > 0.0;
-        Self { normal: if back { -ng } else { ng }, back }
+        Self { normal: ng * if back { -1.0 } else { 1.0 }, back }
     }
 
     /// Front and back of a triangle with the unit normal `ng`.

@@ -58,7 +58,9 @@ impl Pyramid {
                 (0..layout.levels[number].keys.len()).into_par_iter().map(settle).collect();
             levels.push(keep_lit(layout, number, &sums.cells[number], &values));
         }
-        Some(Self { grid: layout.grid.clone(), classes: layout.classes, levels, store })
+        let grid = layout.grid.clone();
+        let per_finest_area = grid.levels[grid.finest()].cell_size.powi(-2);
+        Some(Self { grid, classes: layout.classes, levels, store, per_finest_area })
     }
 }
 

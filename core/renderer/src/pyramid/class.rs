@@ -54,16 +54,13 @@ impl NormalClasses {
 
     #[inline(always)]
     fn direction(self, normal: Vec3) -> usize {
+        // Ties go to the earlier axis. Without branches: which way a hit faces is anyone's guess.
         let a = normal.abs();
-        // Ties go to the earlier axis.
-        let axis = if a.x >= a.y - SNAP && a.x >= a.z - SNAP {
-            0
-        } else if a.y >= a.z - SNAP {
-            1
-        } else {
-            2
-        };
-        let face = axis * 2 + usize::from(normal[axis] < 0.0);
+        let not_x = !((a.x >= a.y - SNAP) & (a.x >= a.z - SNAP));
+        let not_y = !(a.y >= a.z - SNAP);
+        let axis = usize::from(not_x) * (1 + usize::from(not_y));
+        let negative = normal.is_negative_bitmask() >> axis & 1;
+        let face = axis * 2 + negative as usize;
         match self {
             Self::Six => face,
             Self::FiftyFour => {

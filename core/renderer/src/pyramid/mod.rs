@@ -98,6 +98,8 @@ pub struct Pyramid {
     classes: NormalClasses,
     levels: Vec<Level>,
     store: BinStore,
+    /// One over the area of a finest cell's face (per square scene unit).
+    per_finest_area: f32,
 }
 
 impl Pyramid {
@@ -152,8 +154,7 @@ impl Pyramid {
     )]
     #[inline(always)]
     pub fn level_for(&self, footprint: f32) -> usize {
-        let l = self.finest_cell_size();
-        let ratio = (footprint / (l * l)).clamp(1.0, 1e30);
+        let ratio = (footprint * self.per_finest_area).clamp(1.0, 1e30);
         // Half the binary exponent, rounded, is log2 of the ratio of lengths.
         let exponent = (ratio.to_bits() >> 23) as i32 - 127;
         let coarser = ((exponent + 1) >> 1) - 1;
