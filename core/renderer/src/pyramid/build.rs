@@ -133,7 +133,7 @@ fn merge(layout: &Layout, sums: &mut Sums) {
 fn keep_lit(layout: &Layout, number: usize, sums: &[CellSum], values: &[[Cell; SETS]]) -> Level {
     let places: Vec<usize> = (0..values.len()).filter(|&place| sums[place].count > 0).collect();
     let keys = places.iter().map(|&place| -> CellKey { layout.levels[number].keys[place] });
-    let index = LevelIndex::new(&layout.grid.levels[number], layout.classes.count(), keys);
+    let index = LevelIndex::new(&layout.grid.levels[number], keys);
     let cells = std::array::from_fn(|set| places.iter().map(|&place| values[place][set]).collect());
     Level { index, cells }
 }

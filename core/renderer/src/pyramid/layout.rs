@@ -343,7 +343,7 @@ fn levels(grid: &Grid, classes: NormalClasses, cells: Cells) -> Vec<LevelLayout>
             let mut cells: Vec<_> = cells.into_iter().collect();
             cells.par_sort_unstable_by_key(|(key, _)| *key);
             let (keys, surfaces): (Vec<_>, Vec<_>) = cells.into_iter().unzip();
-            let index = LevelIndex::new(level, classes.count(), keys.iter().copied());
+            let index = LevelIndex::new(level, keys.iter().copied());
             LevelLayout { index, keys, surfaces }
         })
         .collect()
