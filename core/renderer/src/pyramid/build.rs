@@ -99,7 +99,7 @@ fn push_bins(layout: &Layout, number: usize, sums: &Sums, store: &mut BinStore) 
         .map(|(&place, bins)| {
             let area = surfaces[place].glossy_area.max(1) as f64 * layout.area_unit;
             let sets = std::array::from_fn(|set| &bins[set * sums.bins.count()..][..sums.bins.count()]);
-            (place, store.push(surfaces[place].mean_normal(), sets, sums.quantum / area))
+            (place, store.push(surfaces[place].mean_normal(), sets, sums.bin_quantum / area))
         })
         .collect()
 }

@@ -28,8 +28,8 @@ mod mixed;
 
 use glam::{IVec3, Vec3};
 
-pub use accumulator::{Accumulator, Landing, SETS};
-pub use bins::DirectionBins;
+pub use accumulator::{Accumulator, Landing, Leaving, SETS};
+pub use bins::{DirectionBins, Lanes};
 pub use class::NormalClasses;
 pub use grid::Grid;
 pub use layout::{Layout, SidePoint, SurfaceTriangle};
