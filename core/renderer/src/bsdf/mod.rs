@@ -24,6 +24,7 @@ mod lobe;
 mod material;
 mod principled;
 mod reflection;
+mod rough;
 mod sanitize;
 
 use std::ops::BitOr;
