@@ -39,9 +39,9 @@ fn wide_shapes() -> impl Iterator<Item = LampShape> {
     shapes().into_iter().filter(move |shape| !is_small(shape))
 }
 
-/// A lamp over `FROM`, tilted.
+/// A lamp over `FROM`, tilted and stretched.
 fn placed(shape: LampShape) -> Lamp {
-    turned(lamp(shape, 5.0, Vec3::new(0.0, 0.0, 0.25)))
+    turned(Lamp { stretch: [1.3, 0.8], ..lamp(shape, 5.0, Vec3::new(0.0, 0.0, 0.25)) })
 }
 
 fn emissive_scene(lamps: Vec<Lamp>) -> (Scene, Vec<Rgb>) {

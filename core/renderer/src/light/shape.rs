@@ -42,7 +42,7 @@ impl Light {
                 Shape::Point(PointLamp::new(lamp, radius, soft_falloff, None)?)
             }
             LampShape::Spot { radius, soft_falloff, cone_angle, blend } => {
-                let cone = SpotCone::new(lamp.axis, cone_angle, blend)?;
+                let cone = SpotCone::new(lamp, cone_angle, blend)?;
                 Shape::Point(PointLamp::new(lamp, radius, soft_falloff, Some(cone))?)
             }
             LampShape::Sun { angle } => Shape::Sun(SunLamp::new(lamp, angle)?),
