@@ -35,8 +35,8 @@ fn a_scene_without_light_is_empty() {
     }
     let blue = dark(vec![], vec![triangle(0), triangle(1)], &emission);
     assert!(!blue.is_empty());
-    assert_eq!(blue.emitter_pdf(Vec3::Z, 0, 0, Vec3::NEG_Z, 1.0, Vec3::Z), 0.0);
-    assert!(blue.emitter_pdf(Vec3::Z, 1, 0, Vec3::NEG_Z, 1.0, Vec3::Z) > 0.0);
+    assert_eq!(blue.emitter_pdf(Vec3::Z, 0, 0, Vec3::NEG_Z, 1.0), 0.0);
+    assert!(blue.emitter_pdf(Vec3::Z, 1, 0, Vec3::NEG_Z, 1.0) > 0.0);
     assert!(!Lights::build(&scene(vec![], vec![], 1.0), &[]).is_empty());
     assert!(!Lights::build(&scene(vec![lamp(POINT, 1.0, Vec3::Z)], vec![], 0.0), &[]).is_empty());
 }
@@ -75,7 +75,7 @@ fn lights_add_up_however_they_are_chosen() {
         let mut lamps = vec![strong.clone(), weak.clone(), away.clone()];
         lamps.extend(vec![lamp(PANEL, 1e-6, Vec3::new(0.0, 0.0, -0.5)); 2 * copies]);
         let lights = Lights::build(&scene(lamps, Vec::new(), 0.0), &[]);
-        assert_close(irradiance(&lights, p, Vec3::Z, 4000, 24), apart, 2e-3);
+        assert_close(irradiance(&lights, p, Vec3::Z, 40_000, 8), apart, 2e-3);
     }
 }
 

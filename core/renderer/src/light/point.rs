@@ -5,6 +5,7 @@ use std::f32::consts::{FRAC_1_PI, PI, TAU};
 
 use glam::Vec3;
 
+use super::cluster::Bounds;
 use super::proxy::Hull;
 use super::spot::SpotCone;
 use super::{Crossing, LARGEST_LENGTH, LightSample, Photon, Ray, proxy, warp};
@@ -49,6 +50,15 @@ impl PointLamp {
     /// Triangles that hold the lamp: a cube about the sphere every soft disk lies in.
     pub(super) fn hull(&self) -> Hull {
         proxy::cube(self.center, self.radius)
+    }
+
+    /// Where its light is and goes.
+    pub(super) fn bounds(&self) -> Bounds {
+        let ball = Bounds::ball(self.center, self.radius, self.intensity.mean());
+        match &self.cone {
+            Some(cone) => Bounds { axis: cone.axis(), spread: 0.0, reach: cone.half_angle(), ..ball },
+            None => ball,
+        }
     }
 
     /// About the irradiance at `p`, for choosing between lights; 0 only where there is none.

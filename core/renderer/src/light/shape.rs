@@ -1,8 +1,7 @@
 //! One light of any kind.
 
-use glam::Vec3;
-
 use super::area::AreaLamp;
+use super::cluster::Bounds;
 use super::distant::SceneBall;
 use super::emitter::MeshEmitter;
 use super::point::PointLamp;
@@ -61,12 +60,13 @@ impl Light {
         }
     }
 
-    pub(super) fn irradiance_estimate(&self, p: Vec3) -> f32 {
+    /// Bounds of the lamp, or of each emitting triangle.
+    pub(super) fn bounds(&self) -> Vec<Bounds> {
         match &self.shape {
-            Shape::Point(lamp) => lamp.irradiance_estimate(p),
-            Shape::Area(lamp) => lamp.irradiance_estimate(p),
-            Shape::Sun(lamp) => lamp.irradiance_estimate(),
-            Shape::Mesh(mesh) => mesh.irradiance_estimate(p),
+            Shape::Point(lamp) => vec![lamp.bounds()],
+            Shape::Area(lamp) => vec![lamp.bounds()],
+            Shape::Sun(lamp) => vec![lamp.bounds()],
+            Shape::Mesh(mesh) => mesh.bounds().collect(),
         }
     }
 

@@ -144,19 +144,27 @@ impl SpotCone {
         (sum / (f64::from(around) * f64::from(across))) as f32
     }
 
+    pub(super) fn axis(&self) -> Vec3 {
+        self.axis
+    }
+
+    /// Of the round cone that holds it (rad).
+    pub(super) fn half_angle(&self) -> f32 {
+        let edge = self.stretched.map_or(self.edge, |stretched| {
+            let [x, y] = stretched.by.to_array().map(|by| self.stretched_edge(by));
+            x.max(y)
+        });
+        (1.0 - edge).clamp(-1.0, 1.0).acos()
+    }
+
     /// False where no direction from within `radius` of the lamp's center to the point at `offset` lies in the cone.
     pub(super) fn may_reach(&self, offset: Vec3, radius: f32) -> bool {
         let distance = offset.length();
         if distance <= radius * 1.001 {
             return true;
         }
-        let edge = self.stretched.map_or(self.edge, |stretched| {
-            let [x, y] = stretched.by.to_array().map(|by| self.stretched_edge(by));
-            x.max(y)
-        });
-        let half_angle = (1.0 - edge).clamp(-1.0, 1.0).acos();
         let angle = (self.axis.dot(offset) / distance).clamp(-1.0, 1.0).acos();
-        angle <= half_angle + (radius / distance).asin() + 1e-3
+        angle <= self.half_angle() + (radius / distance).asin() + 1e-3
     }
 }
 
