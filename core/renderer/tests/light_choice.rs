@@ -186,10 +186,11 @@ proptest! {
         corners in prop::array::uniform3(odd_vector()),
         emission in odd_number(),
         from in (-0.5_f32..0.5, -0.5_f32..0.5, -0.5_f32..0.5).prop_map(Vec3::from),
+        copies in prop::sample::select(vec![1_usize, 40]),
         seed in any::<u64>(),
     ) {
         let mesh = object(&corners, &[[0, 1, 2], [1, 1, 2]], vec![0, 0], None);
-        let lights = Lights::build(&scene(lamps, vec![mesh], emission), &[Rgb::splat(emission)]);
+        let lights = Lights::build(&scene(vec![lamps; copies].concat(), vec![mesh], emission), &[Rgb::splat(emission)]);
         prop_assert!(lights.total_flux().0.iter().all(|c| *c >= 0.0 && c.is_finite()));
         for proxy in lights.lamp_proxies() {
             prop_assert!(proxy.triangles.iter().flatten().all(|&v| (v as usize) < proxy.positions.len()));

@@ -7,6 +7,9 @@ use glam::Vec3;
 
 use super::Receiver;
 
+/// Light that leaves at a grazing angle counts as leaving with this cosine: lamps do not all fade as it does.
+const LEAST_LEAVING: f32 = 0.05;
+
 /// Emitters within a box whose light leaves within a cone.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
@@ -147,7 +150,7 @@ impl Cluster {
         }
         let arriving =
             receiver.normal.map_or(1.0, |normal| cos_less(normal.dot(towards), [sin, cos]).max(0.0));
-        self.intensity * leaving.max(0.05) * arriving / distance_squared
+        self.intensity * leaving.max(LEAST_LEAVING) * arriving / distance_squared
     }
 
     /// The highest cosine under which light from the cluster arrives; 1 where the receiver has no normal.
