@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use crate::accel::{Accel, Hit, Ray};
 use crate::bsdf::{Bsdf, BsdfSample, LobeSet, PreparedMaterial, ShadingFrame};
 use crate::effects_plan::EffectsPlan;
-use crate::light::Lights;
+use crate::light::{Lights, Receiver};
 use crate::scene::visibility;
 
 /// Everything a pass asks of the scene.
@@ -31,6 +31,14 @@ pub struct Surface<'a> {
     pub bsdf: Bsdf<'a>,
     /// Which triangle.
     pub hit: Hit,
+}
+
+impl Surface<'_> {
+    /// What lights it.
+    #[must_use]
+    pub fn receiver(&self) -> Receiver {
+        Receiver { p: self.p, normal: self.bsdf.lit_side() }
+    }
 }
 
 impl<'a> LitScene<'a> {

@@ -188,6 +188,12 @@ impl Bsdf<'_> {
         self.wo
     }
 
+    /// Shading normal of the side that light must come from to reach `wo`; `None` where it may come through.
+    #[must_use]
+    pub fn lit_side(&self) -> Option<Vec3> {
+        (!self.lobes.iter().any(Lobe::is_transmission)).then_some(self.frame.ns)
+    }
+
     /// True when a lobe of `set` is there.
     #[must_use]
     pub fn has(&self, set: LobeSet) -> bool {
