@@ -130,12 +130,18 @@ impl<'a> Accumulator<'a> {
     pub fn bytes(&self) -> usize {
         let sums =
             self.flux.iter().map(|level| level.len() * (size_of::<[[i64; 3]; SETS]>() + size_of::<u32>()));
+        sums.sum::<usize>() + self.bin_bytes()
+    }
+
+    /// Memory (bytes) of the direction bins alone.
+    #[must_use]
+    pub fn bin_bytes(&self) -> usize {
         let glossy = self.glossy.iter().map(|level| {
             let filled = level.iter().filter(|cell| cell.get().is_some()).count();
             level.len() * size_of::<OnceLock<GlossySums>>()
                 + filled * self.bins.count() * size_of::<[[i64; 3]; SETS]>()
         });
-        sums.chain(glossy).sum()
+        glossy.sum()
     }
 
     /// What was added, by level and place.

@@ -1,6 +1,7 @@
 //! From sums to a pyramid that can be read: levels merged octree-wise, sparse cells given their parent's value.
 
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -31,7 +32,10 @@ impl Pyramid {
         keep_going: impl Fn() -> bool,
     ) -> Option<Self> {
         let mut sums = accumulator.into_sums();
-        merge(layout, &mut sums);
+        merge(layout, &mut sums.cells);
+        let clock = Instant::now();
+        merge_bins(layout, &mut sums);
+        let mut bins_time = clock.elapsed();
         let mixed = mixed_cells(layout, &sums.cells, &visible);
         let enough = 4 * u64::from(photons_per_cell);
         let mut store = BinStore::new(sums.bins);
@@ -40,7 +44,9 @@ impl Pyramid {
             if !keep_going() {
                 return None;
             }
+            let clock = Instant::now();
             let glossy = push_bins(layout, number, &sums, &mut store);
+            bins_time += clock.elapsed();
             let parents = levels.last();
             let settle = |place: usize| -> [Cell; SETS] {
                 let parent = parents.and_then(|parents| {
@@ -60,7 +66,7 @@ impl Pyramid {
         }
         let grid = layout.grid.clone();
         let per_finest_area = grid.levels[grid.finest()].cell_size.powi(-2);
-        Some(Self { grid, classes: layout.classes, levels, store, per_finest_area })
+        Some(Self { grid, classes: layout.classes, levels, store, bins_time, per_finest_area })
     }
 }
 
@@ -105,16 +111,21 @@ fn push_bins(layout: &Layout, number: usize, sums: &Sums, store: &mut BinStore) 
 }
 
 /// Adds every cell to its parent, from the finest level up.
-fn merge(layout: &Layout, sums: &mut Sums) {
+fn merge(layout: &Layout, cells: &mut [Vec<CellSum>]) {
     for level in (1..layout.levels.len()).rev() {
-        let (coarser, finer) = sums.cells.split_at_mut(level);
+        let (coarser, finer) = cells.split_at_mut(level);
         for (place, sum) in finer[0].iter().enumerate().filter(|(_, sum)| sum.count > 0) {
             if let Some(parent) = layout.parent(level, place) {
                 coarser[level - 1][parent].add(sum);
             }
         }
-        let frame =
-            |level: usize, place: usize| Frame::new(layout.levels[level].surfaces[place].mean_normal());
+    }
+}
+
+/// Adds the bins of every glossy cell to its parent's, from the finest level up.
+fn merge_bins(layout: &Layout, sums: &mut Sums) {
+    let frame = |level: usize, place: usize| Frame::new(layout.levels[level].surfaces[place].mean_normal());
+    for level in (1..layout.levels.len()).rev() {
         let (coarser, finer) = sums.glossy.split_at_mut(level);
         for (&place, values) in &finer[0] {
             if let Some(parent) = layout.parent(level, place) {
