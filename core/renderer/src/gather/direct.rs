@@ -69,7 +69,7 @@ pub(super) fn shadow_ray(
     let weight = if sample.is_delta {
         1.0
     } else {
-        let pdf_bsdf = if lit == lobes { pdf_lit } else { bsdf.pdf(sample.wi, lobes) };
+        let pdf_bsdf = if bsdf.has(lobes.without(lit)) { bsdf.pdf(sample.wi, lobes) } else { pdf_lit };
         power_heuristic(shares.light * sample.pdf_solid_angle, shares.bsdf * pdf_bsdf)
     };
     let cos = sample.wi.dot(bsdf.frame.ns).abs();
