@@ -26,8 +26,8 @@ fn glass() -> ClosureRecord {
 
 /// Everything there is: a diffuse room, a glass ball, a glossy and a mirror-like one, a panel that lets light through, a
 /// lamp, a surface that shines, and a world that is seen through a hole.
-fn everything() -> Scene {
-    let room = room(glass());
+fn everything(pixels: u32) -> Scene {
+    let room = Room { pixels, ..room(glass()) };
     let mut builder = room.equipment();
     let [(_, walls), (ball, glass)] = room.meshes();
     let low = Vec3::splat(-1.0);
@@ -67,7 +67,7 @@ fn bits(picture: &Picture) -> Vec<u32> {
 /// All classes together, and each of them alone on top of what is always seen: the lights themselves.
 #[test]
 fn classes_of_light_paths_are_a_partition() {
-    let scene = everything();
+    let scene = everything(32);
     let all = render(&scene, &switched(Switch::Auto, &[]));
     let none = render(&scene, &switched(Switch::Off, &PATH_CLASSES));
     let mut sum = none.combined.clone();
@@ -91,7 +91,7 @@ fn classes_of_light_paths_are_a_partition() {
 /// A picture is the sum of the pictures by each light; photons and light samples are drawn anew, so within noise.
 #[test]
 fn lights_are_a_partition() {
-    let scene = everything();
+    let scene = everything(32);
     let lights = [Effect::EnvironmentLight, Effect::EmissiveMeshes];
     let light = |off: &[Effect]| {
         let mut settings = switched(Switch::Off, off);
@@ -154,7 +154,7 @@ fn a_diffuse_room_pays_for_nothing_else() {
 /// What is off is neither traced nor stored, and the scene still says who asked for it.
 #[test]
 fn off_leaves_out() {
-    let scene = everything();
+    let scene = everything(32);
     let all = render(&scene, &switched(Switch::Auto, &[]));
     for effect in Effect::ALL {
         let off = render(&scene, &switched(Switch::Off, &[effect]));
@@ -175,7 +175,7 @@ fn off_leaves_out() {
 /// Reasons name what asks.
 #[test]
 fn reasons_are_named() {
-    let picture = render(&everything(), &switched(Switch::Auto, &[]));
+    let picture = render(&everything(32), &switched(Switch::Auto, &[]));
     let because = |effect| of(&picture, effect).because.as_str();
     assert_eq!(because(Effect::DirectLight), "lamp 'lamp'");
     assert_eq!(because(Effect::Caustics), "glass on 'object' (material 'material')");
@@ -190,7 +190,7 @@ fn costs_add_up() {
     let mut settings = switched(Switch::Auto, &[]);
     settings.gather.rays = 256;
     settings.photon_pass.photon_count = 200_000;
-    let stats = render(&everything(), &settings).stats;
+    let stats = render(&everything(96), &settings).stats;
     let sum: f64 = stats.effects.iter().map(|effect| effect.seconds).sum();
     let passes = stats.seconds.photon_pass + stats.seconds.pyramid + stats.seconds.gather;
     assert!(sum < passes && sum > 0.7 * passes, "{sum} s of {passes} s");

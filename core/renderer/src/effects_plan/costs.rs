@@ -112,12 +112,18 @@ impl Meter {
     /// From here on the work is again for who was worked for before.
     #[inline]
     pub fn back(&mut self, owner: Owner) {
-        if let Some(since) = &mut self.since {
-            let now = Instant::now();
-            self.costs.clocked[self.owner.0] += now - *since;
-            *since = now;
+        if let Some(since) = self.since {
+            self.split(since);
         }
         self.owner = owner;
+    }
+
+    /// Gives the time since `since` to who was worked for.
+    #[cold]
+    fn split(&mut self, since: Instant) {
+        let now = Instant::now();
+        self.costs.clocked[self.owner.0] += now - since;
+        self.since = Some(now);
     }
 
     /// Counts rays traced for the effect that is worked for.

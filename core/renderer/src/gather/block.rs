@@ -25,7 +25,7 @@ use super::path::Sampled;
 use super::vertex::{GatherRay, Vertex, rotate};
 
 /// One block in so many is clocked, to tell what each effect costs.
-const CLOCKED: u64 = 16;
+const CLOCKED: u64 = 64;
 
 /// Work on one block of pixels.
 pub(super) struct Block<'a, 'g, E: Estimator> {

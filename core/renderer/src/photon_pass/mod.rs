@@ -31,7 +31,7 @@ pub use deposit::PyramidDeposits;
 const BATCH: u64 = 4096;
 
 /// Photons of a task that are clocked, to tell what each effect costs.
-const CLOCKED: u64 = 128;
+const CLOCKED: u64 = 64;
 
 /// Highest chance of surviving a landing: an albedo of one would never end.
 const MAX_SURVIVAL: f32 = 0.98;
