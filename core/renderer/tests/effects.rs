@@ -25,23 +25,28 @@ fn glass() -> ClosureRecord {
 }
 
 /// Everything there is: a diffuse room, a glass ball, a glossy and a mirror-like one, a panel that lets light through, a
-/// lamp, a surface that shines, and a world that is seen through a hole.
-fn everything(pixels: u32) -> Scene {
+/// lamp, a surface that shines, and a world that is seen through a hole. Diffuse and glossy colors are multiplied by `shade`.
+fn everything(pixels: u32, shade: f32) -> Scene {
     let room = Room { pixels, ..room(glass()) };
     let mut builder = room.equipment();
-    let [(_, walls), (ball, glass)] = room.meshes();
+    let [_, (ball, glass)] = room.meshes();
+    let walls = diffuse(Room::WALLS * shade);
     let low = Vec3::splat(-1.0);
     place(&mut builder, cuboid(low, Vec3::new(1.0, 1.0, -0.95)), std::slice::from_ref(&walls));
     place(&mut builder, cuboid(Vec3::new(-1.0, 0.95, -1.0), Vec3::splat(1.0)), &[walls]);
     place(&mut builder, ball, &[glass]);
-    place(&mut builder, sphere(3, 0.3, Vec3::new(0.8, 0.1, -0.6)), &[glossy(0.8, 0.7)]);
+    place(&mut builder, sphere(3, 0.3, Vec3::new(0.8, 0.1, -0.6)), &[glossy(0.8 * shade, 0.7)]);
     place(&mut builder, sphere(3, 0.2, Vec3::new(-0.3, 0.5, -0.7)), &[glossy(0.9, 0.0)]);
     let panel = [
         ClosureRecord::Transparent { color: Rgb::splat(0.5) },
-        ClosureRecord::Diffuse { color: Rgb::splat(0.3) },
+        ClosureRecord::Diffuse { color: Rgb::splat(0.3 * shade) },
     ];
     place(&mut builder, cuboid(Vec3::new(0.2, -0.3, -0.9), Vec3::new(0.3, 0.1, 0.2)), &[material(&panel)]);
-    place(&mut builder, cuboid(Vec3::new(-0.9, 0.4, -0.9), Vec3::new(-0.6, 0.7, -0.6)), &[emitter(0.5, 2.0)]);
+    place(
+        &mut builder,
+        cuboid(Vec3::new(-0.9, 0.4, -0.9), Vec3::new(-0.6, 0.7, -0.6)),
+        &[emitter(0.5 * shade, 2.0)],
+    );
     builder.set_world(world(0.3));
     builder.finish().expect("a scene with a camera")
 }
@@ -64,12 +69,15 @@ fn bits(picture: &Picture) -> Vec<u32> {
     picture.combined.iter().chain(&picture.indirect).map(|v| v.to_bits()).collect()
 }
 
-/// All classes together, and each of them alone on top of what is always seen: the lights themselves.
+/// All classes together, and each of them alone on top of what is always seen: the lights themselves, as in a scene whose
+/// diffuse and glossy surfaces are black.
 #[test]
 fn classes_of_light_paths_are_a_partition() {
-    let scene = everything(32);
+    let scene = everything(32, 1.0);
     let all = render(&scene, &switched(Switch::Auto, &[]));
     let none = render(&scene, &switched(Switch::Off, &PATH_CLASSES));
+    let black = render(&everything(32, 0.0), &switched(Switch::Auto, &[]));
+    assert_same_light("none", &none.combined, &black.combined);
     let mut sum = none.combined.clone();
     for class in PATH_CLASSES {
         let others: Vec<_> = PATH_CLASSES.into_iter().filter(|&other| other != class).collect();
@@ -82,16 +90,22 @@ fn classes_of_light_paths_are_a_partition() {
             *sum += alone - none;
         }
     }
-    for (index, (sum, all)) in sum.iter().zip(&all.combined).enumerate() {
-        let error = (sum - all).abs();
-        assert!(error <= 1e-5 * all.abs().max(1.0), "number {index}: {sum} is not {all}");
+    assert_same_light("sum", &sum, &all.combined);
+}
+
+/// Equal but for rounding.
+#[track_caller]
+fn assert_same_light(name: &str, found: &[f32], expected: &[f32]) {
+    for (index, (found, expected)) in found.iter().zip(expected).enumerate() {
+        let error = (found - expected).abs();
+        assert!(error <= 1e-5 * expected.abs().max(1.0), "{name}, number {index}: {found} is not {expected}");
     }
 }
 
 /// A picture is the sum of the pictures by each light; photons and light samples are drawn anew, so within noise.
 #[test]
 fn lights_are_a_partition() {
-    let scene = everything(32);
+    let scene = everything(32, 1.0);
     let lights = [Effect::EnvironmentLight, Effect::EmissiveMeshes];
     let light = |off: &[Effect]| {
         let mut settings = switched(Switch::Off, off);
@@ -154,7 +168,7 @@ fn a_diffuse_room_pays_for_nothing_else() {
 /// What is off is neither traced nor stored, and the scene still says who asked for it.
 #[test]
 fn off_leaves_out() {
-    let scene = everything(32);
+    let scene = everything(32, 1.0);
     let all = render(&scene, &switched(Switch::Auto, &[]));
     for effect in Effect::ALL {
         let off = render(&scene, &switched(Switch::Off, &[effect]));
@@ -175,7 +189,7 @@ fn off_leaves_out() {
 /// Reasons name what asks.
 #[test]
 fn reasons_are_named() {
-    let picture = render(&everything(32), &switched(Switch::Auto, &[]));
+    let picture = render(&everything(32, 1.0), &switched(Switch::Auto, &[]));
     let because = |effect| of(&picture, effect).because.as_str();
     assert_eq!(because(Effect::DirectLight), "lamp 'lamp'");
     assert_eq!(because(Effect::Caustics), "glass on 'object' (material 'material')");
@@ -190,7 +204,7 @@ fn costs_add_up() {
     let mut settings = switched(Switch::Auto, &[]);
     settings.gather.rays = 256;
     settings.photon_pass.photon_count = 200_000;
-    let stats = render(&everything(96), &settings).stats;
+    let stats = render(&everything(96, 1.0), &settings).stats;
     let sum: f64 = stats.effects.iter().map(|effect| effect.seconds).sum();
     let passes = stats.seconds.photon_pass + stats.seconds.pyramid + stats.seconds.gather;
     assert!(sum < passes && sum > 0.7 * passes, "{sum} s of {passes} s");
