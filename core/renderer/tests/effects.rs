@@ -207,10 +207,11 @@ fn costs_add_up() {
     let stats = render(&everything(96, 1.0), &settings).stats;
     let sum: f64 = stats.effects.iter().map(|effect| effect.seconds).sum();
     let passes = stats.seconds.photon_pass + stats.seconds.pyramid + stats.seconds.gather;
-    assert!(sum < passes && sum > 0.7 * passes, "{sum} s of {passes} s");
+    // All of the photon pass and of the pyramid belongs to effects; of the gather all but camera rays.
+    let photons = stats.seconds.photon_pass + stats.seconds.pyramid;
+    assert!(sum < passes && sum > 0.9 * photons, "{sum} s of {passes} s");
     for effect in &stats.effects {
         assert!(effect.seconds > 0.0, "{}", effect.name);
-        assert!(effect.seconds < 0.9 * sum, "{}", effect.name);
     }
     let bytes = |effect: Effect| stats.effects[effect as usize].bytes;
     assert!(bytes(Effect::IndirectGlossy) > 128 * 6 * stats.pyramid.glossy_cells);
