@@ -13,8 +13,8 @@ from typing import Any
 
 import bpy
 
-from benchmarks import capture, export_speed, render_speed
-from benchmarks.figures import Row, Target, details, machine, table
+from benchmarks import capture, effects_saved, export_speed, render_speed
+from benchmarks.figures import Figure, Row, Target, details, machine, table
 from rgp_engine import native
 
 _ROOT = Path(__file__).resolve().parent.parent
@@ -43,8 +43,11 @@ def main() -> None:
     before = machine()
     rows = []
     for blend in scenes:
-        speed = render_speed.measure(blend, options.threads, options.repetitions, _say)
+        scene = render_speed.core_scene(blend)
+        speed = render_speed.measure(blend.stem, scene, options.threads, options.repetitions, _say)
         rows += _render_rows(blend.stem, speed)
+        saved = effects_saved.measure(blend.stem, scene, options.threads, options.repetitions, _say)
+        rows += _effect_rows(blend.stem, saved)
     exports = export_speed.measure(options.repetitions, _say)
     rows += [
         Row("export_million_triangles_seconds", kind, figure, _EXPORT_SECONDS)
@@ -82,6 +85,16 @@ def _render_rows(scene: str, speed: render_speed.RenderSpeed) -> list[Row]:
         Row(
             "pyramid_bytes", scene, speed.pyramid_bytes, _DIFFUSE_PYRAMID_BYTES if speed.is_diffuse else None
         ),
+    ]
+
+
+def _effect_rows(scene: str, saved: effects_saved.EffectsSaved) -> list[Row]:
+    """What the effects plan saves in one scene."""
+    return [
+        Row("effects_not_called_for", scene, Figure([len(saved.not_called_for)]), None),
+        Row("all_effects_on_over_planned_seconds", scene, saved.seconds_ratio, None),
+        Row("all_effects_on_more_bytes", scene, saved.bytes_more, None),
+        Row("all_effects_on_more_rays", scene, saved.rays_more, None),
     ]
 
 

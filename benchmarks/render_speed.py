@@ -38,9 +38,10 @@ class RenderSpeed:
     """True where no cell holds light by direction."""
 
 
-def measure(blend: Path, threads: int, repetitions: int, progress: Progress) -> RenderSpeed:
-    """Renders a file several times, each time followed by the tracing that its gather is compared with."""
-    scene = _core_scene(blend)
+def measure(
+    stem: str, scene: "rgp_core.Scene", threads: int, repetitions: int, progress: Progress
+) -> RenderSpeed:
+    """Renders a scene several times, each time followed by the tracing that its gather is compared with."""
     settings = {**SETTINGS, "render": {"threads": threads}}
     renders, ratios = [], []
     for repetition in range(repetitions):
@@ -50,7 +51,7 @@ def measure(blend: Path, threads: int, repetitions: int, progress: Progress) -> 
         ratios.append(gather / floor["seconds"])
         renders.append(stats)
         progress(
-            f"{blend.stem}, {repetition + 1} of {repetitions}: gather {gather:.2f} s, "
+            f"{stem}, {repetition + 1} of {repetitions}: gather {gather:.2f} s, "
             f"the same {floor['rays'] / 1e6:.1f} million rays one by one {floor['seconds']:.2f} s"
         )
     return RenderSpeed(
@@ -62,7 +63,7 @@ def measure(blend: Path, threads: int, repetitions: int, progress: Progress) -> 
     )
 
 
-def _core_scene(blend: Path) -> "rgp_core.Scene":
+def core_scene(blend: Path) -> "rgp_core.Scene":
     """The file's scene, at its own resolution where that is no larger than our own scenes'."""
     b_scene = open_scene(blend)
     b_render = b_scene.render

@@ -46,14 +46,27 @@ def effect_rows(stats: Mapping[str, Any]) -> list[tuple[str, str]]:
     """The effects plan of a stats file as labelled lines of text."""
     lines = []
     for effect in stats.get("effects", ()):
-        cost = ", ".join(effect_costs(effect)) if effect["called_for"] else "not called for"
-        lines.append((_title(effect["name"]), f"{cost}: {effect['because']}"))
+        cost = ", ".join(effect_costs(effect)) if effect["computed"] else ""
+        answer = ": ".join(text for text in (effect_answer(effect), cost) if text)
+        lines.append((effect_label(effect), answer))
     return lines
 
 
+def effect_label(effect: Mapping[str, Any]) -> str:
+    """Such as "Direct light"."""
+    return _title(effect["name"])
+
+
+def effect_answer(effect: Mapping[str, Any]) -> str:
+    """Whether an effect was computed and why, such as "on, glass on 'Bottle'"."""
+    answer = "on" if effect["computed"] else "off"
+    chosen = "" if effect["switch"] == "auto" else " by choice"
+    return f"{answer}{chosen}, {effect['because']}"
+
+
 def effect_costs(effect: Mapping[str, Any]) -> list[str]:
-    """Time and, where it is known, memory of one effect."""
-    memory = [_mebibytes(effect["bytes"])] if "bytes" in effect else []
+    """Time and, where there is any, memory of one effect."""
+    memory = [_mebibytes(effect["bytes"])] if effect["bytes"] else []
     return [f"{effect['seconds']:.2f} s", *memory]
 
 

@@ -9,6 +9,7 @@ Names, defaults and ranges of the scene's groups are those of the core's setting
 import bpy
 
 from .accuracy import RGPAccuracyList, RGPAccuracyRow
+from .effects import RGPEffectSettings
 from .film import RGPFilmSettings
 from .gather import RGPGatherSettings
 from .photon_pass import RGPPhotonPassSettings
@@ -26,6 +27,7 @@ class RGPSceneSettings(bpy.types.PropertyGroup):
     photon_pass: bpy.props.PointerProperty(type=RGPPhotonPassSettings)
     pyramid: bpy.props.PointerProperty(type=RGPPyramidSettings)
     gather: bpy.props.PointerProperty(type=RGPGatherSettings)
+    effects: bpy.props.PointerProperty(type=RGPEffectSettings)
     film: bpy.props.PointerProperty(type=RGPFilmSettings)
     render: bpy.props.PointerProperty(type=RGPRenderSettings)
 
@@ -35,6 +37,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         RGPPhotonPassSettings,
         RGPPyramidSettings,
         RGPGatherSettings,
+        RGPEffectSettings,
         RGPFilmSettings,
         RGPRenderSettings,
         RGPSceneSettings,

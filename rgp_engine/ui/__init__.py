@@ -2,13 +2,14 @@
 
 import bpy
 
-from . import accuracy, blender_panels, light, material, problems, render, scene_parts
+from . import accuracy, blender_panels, effects, light, material, problems, render, scene_parts
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
     (
         *render.CLASSES,
         *accuracy.CLASSES,
         *problems.CLASSES,
+        *effects.CLASSES,
         *light.CLASSES,
         *material.CLASSES,
         *scene_parts.CLASSES,

@@ -5,7 +5,7 @@ from typing import Any
 from bpy.types import Panel
 
 from ..report import last_outcome
-from ..stats import effect_costs, rows
+from ..stats import rows
 from .base import ClosedEnginePanel, EnginePanel
 
 _MAX_PROBLEMS = 50
@@ -60,32 +60,4 @@ class RGP_PT_statistics(ClosedEnginePanel, Panel):
             split.label(text=value)
 
 
-class RGP_PT_effects(ClosedEnginePanel, Panel):
-    """What each effect of the last render cost."""
-
-    bl_label = "Effects"
-    bl_context = "render"
-    bl_parent_id = "RGP_PT_statistics"
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        """True when there is a plan to show."""
-        outcome = last_outcome()
-        return super().poll(context) and outcome is not None and bool(outcome.stats.get("effects"))
-
-    def draw(self, _context: Any) -> None:
-        """Draws the panel."""
-        outcome = last_outcome()
-        effects = outcome.stats["effects"] if outcome else ()
-        column = self.layout.column(align=True)
-        for effect in (effect for effect in effects if effect["called_for"]):
-            for label, cost in zip((effect["name"].capitalize(), ""), effect_costs(effect)):
-                split = column.split(factor=0.65)
-                split.label(text=label)
-                split.label(text=cost)
-            column.label(text=effect["because"], icon="BLANK1")
-        for effect in (effect for effect in effects if not effect["called_for"]):
-            column.label(text=f"{effect['name'].capitalize()}: not called for")
-
-
-CLASSES = (RGP_PT_problems, RGP_PT_statistics, RGP_PT_effects)
+CLASSES = (RGP_PT_problems, RGP_PT_statistics)

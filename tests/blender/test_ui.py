@@ -8,10 +8,10 @@ import pytest
 from rgp_engine import report, ui
 from rgp_engine.accuracy import background
 from rgp_engine.report import Outcome, Problem
-from rgp_engine.ui import accuracy, light, material, problems, render, scene_parts
+from rgp_engine.ui import accuracy, effects, light, material, problems, render, scene_parts
 from tests.blender import build
 
-MODULES = (accuracy, light, material, problems, render, scene_parts)
+MODULES = (accuracy, effects, light, material, problems, render, scene_parts)
 
 
 class Layout:
@@ -147,22 +147,40 @@ def test_problems_and_statistics(scene, monkeypatch):
     assert "There is no camera." in draw(problems.RGP_PT_problems)
 
 
+def planned(name, because, **changes):
+    """An effect as the core reports it; on by itself if something asks for it."""
+    asked = because is not None
+    cost = {"pass": "gather", "seconds": 0.0, "bytes": 0, "rays": 0}
+    why = because or "nothing in the scene asks for it"
+    return {
+        "name": name, "switch": "auto", "called_for": asked, "computed": asked, "because": why, **cost, **changes
+    }  # fmt: skip
+
+
 def test_effects_of_the_last_render(scene, monkeypatch):
     monkeypatch.setattr(report, "_last", None)
-    assert draw(problems.RGP_PT_effects) is None
+    assert draw(effects.RGP_PT_effect_costs) is None
     report.publish(Outcome(error="There is no camera."))
-    assert draw(problems.RGP_PT_effects) is None
-    direct = {"name": "direct light", "called_for": True, "because": "lamp 'Sun'", "seconds": 1.5}
-    glossy = {"name": "indirect glossy", "called_for": True, "because": "it shines", "seconds": 0.5}
-    caustics = {"name": "caustics", "called_for": False, "because": "nothing asks", "seconds": 0.0}
-    report.publish(
-        Outcome(stats={"seconds": {}, "effects": [caustics, direct, {**glossy, "bytes": 3 << 19}]})
-    )
-    assert draw(problems.RGP_PT_effects) == [
-        "Direct light", "1.50 s", "lamp 'Sun'",
-        "Indirect glossy", "0.50 s", "", "1.5 MiB", "it shines",
-        "Caustics: not called for",
+    assert draw(effects.RGP_PT_effect_costs) is None
+    direct = planned("direct_light", "lamp 'Sun'", seconds=1.5)
+    glossy = planned("indirect_glossy", "glossy surface on 'Table'", seconds=0.5, bytes=3 << 19)
+    caustics = planned("caustics", None)
+    report.publish(Outcome(stats={"seconds": {}, "effects": [caustics, direct, glossy]}))
+    assert draw(effects.RGP_PT_effect_costs) == [
+        "Direct light", "1.50 s", "Indirect glossy", "0.50 s", "", "1.5 MiB",
     ]  # fmt: skip
+
+
+def test_every_effect_has_a_switch_and_the_last_render_says_why(scene, monkeypatch):
+    monkeypatch.setattr(report, "_last", None)
+    switches = draw(effects.RGP_PT_effects, scene=scene)
+    assert switches[:4] == ["Direct Light", "Indirect Diffuse", "Indirect Glossy", "Caustics"]
+    assert len(switches) == 8
+    glass = "glass on 'Bottle'"
+    chosen = planned("mirrors_and_glass", glass, switch="off", computed=False)
+    report.publish(Outcome(stats={"seconds": {}, "effects": [planned("caustics", glass), chosen]}))
+    shown = draw(effects.RGP_PT_effects, scene=scene)
+    assert shown[3:7] == ["Caustics", f"on, {glass}", "Mirrors and Glass", f"off by choice, {glass}"]
 
 
 def test_error_of_the_last_render(scene, monkeypatch):

@@ -12,12 +12,37 @@ CORE = {
     "pyramid": {"levels": 8, "cell_size": 0.123456, "bytes": 3 << 20},
     "memory_peak_bytes": 10 << 20,
     "effects": [
-        {"name": "direct light", "called_for": True, "because": "lamp 'Lamp'", "seconds": 2.5},
         {
-            "name": "caustics",
-            "called_for": False,
+            "name": "direct_light",
+            "switch": "auto",
+            "computed": True,
+            "because": "lamp 'Lamp'",
+            "seconds": 2.5,
+            "bytes": 3 << 20,
+        },
+        {
+            "name": "emissive_meshes",
+            "switch": "on",
+            "computed": True,
             "because": "nothing in the scene asks for it",
             "seconds": 0.0,
+            "bytes": 0,
+        },
+        {
+            "name": "caustics",
+            "switch": "auto",
+            "computed": False,
+            "because": "nothing in the scene asks for it",
+            "seconds": 0.0,
+            "bytes": 0,
+        },
+        {
+            "name": "mirrors_and_glass",
+            "switch": "off",
+            "computed": False,
+            "because": "glass on 'Bottle'",
+            "seconds": 0.0,
+            "bytes": 0,
         },
     ],
 }
@@ -49,12 +74,12 @@ def test_table():
 
 def test_effects():
     assert effect_rows(CORE) == [
-        ("Direct light", "2.50 s: lamp 'Lamp'"),
-        ("Caustics", "not called for: nothing in the scene asks for it"),
+        ("Direct light", "on, lamp 'Lamp': 2.50 s, 3.0 MiB"),
+        ("Emissive meshes", "on by choice, nothing in the scene asks for it: 0.00 s"),
+        ("Caustics", "off, nothing in the scene asks for it"),
+        ("Mirrors and glass", "off by choice, glass on 'Bottle'"),
     ]
     assert effect_rows({}) == []
-    with_memory = {"effects": [{**CORE["effects"][0], "bytes": 3 << 20}]}
-    assert effect_rows(with_memory) == [("Direct light", "2.50 s, 3.0 MiB: lamp 'Lamp'")]
 
 
 @pytest.mark.parametrize(

@@ -96,20 +96,26 @@ pub trait Estimator: Sync {
         places.iter().map(|place| self.read(place)).collect()
     }
 
-    /// Radiance that the diffuse and glossy lobes of `surface` send to where the ray came from; `None` where the ray has to
-    /// be followed instead. Methods that know nothing but irradiance treat a glossy lobe as a diffuse one of the same
+    /// Radiance that those of the diffuse and glossy lobes of `surface` that are in `lobes` send to where the ray came from;
+    /// `None` where the ray has to be followed instead. Methods that know nothing but irradiance treat a glossy lobe as a diffuse one of the same
     /// albedo.
-    fn radiance(&self, surface: &Surface<'_>, footprint: Footprint, _rng: &mut Rng) -> Option<Rgb> {
+    fn radiance(
+        &self,
+        surface: &Surface<'_>,
+        lobes: LobeSet,
+        footprint: Footprint,
+        _rng: &mut Rng,
+    ) -> Option<Rgb> {
         let place = self.place(surface.p, surface.bsdf.frame.side(), surface.bsdf.wo(), footprint)?;
-        Some(reflectance::<Self>(surface) * self.read(&place))
+        Some(reflectance::<Self>(surface, lobes) * self.read(&place))
     }
 }
 
-/// What turns a reading into radiance: the albedo over π of all lobes whose light is read, taken as diffuse.
+/// What turns a reading into radiance: the albedo over π of the lobes whose light is read, taken as diffuse.
 #[must_use]
-pub fn reflectance<E: Estimator + ?Sized>(surface: &Surface<'_>) -> Rgb {
+pub fn reflectance<E: Estimator + ?Sized>(surface: &Surface<'_>, lobes: LobeSet) -> Rgb {
     if E::READS_RADIANCE {
         return Rgb::WHITE;
     }
-    surface.bsdf.albedo(LobeSet::DIFFUSE | LobeSet::ROUGH) * FRAC_1_PI
+    surface.bsdf.albedo(lobes) * FRAC_1_PI
 }

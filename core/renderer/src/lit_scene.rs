@@ -6,7 +6,7 @@ use crate::accel::{Accel, Hit, Ray};
 use crate::bsdf::{Bsdf, BsdfSample, LobeSet, PreparedMaterial, ShadingFrame};
 use crate::effects_plan::EffectsPlan;
 use crate::light::{Lights, Receiver};
-use crate::scene::visibility;
+use crate::scene::{World, visibility};
 
 /// Everything a pass asks of the scene.
 pub struct LitScene<'a> {
@@ -16,6 +16,8 @@ pub struct LitScene<'a> {
     pub materials: Vec<PreparedMaterial>,
     /// Lamps, emissive meshes and the world.
     pub lights: Lights,
+    /// Light from outside, black where the plan leaves it out.
+    pub world: World,
     /// What is called for.
     pub plan: EffectsPlan,
 }

@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 use crate::accel::Accel;
 use crate::baseline;
 use crate::bsdf::{LobeSet, MaterialTable, PreparedMaterial};
-use crate::effects_plan::EffectsPlan;
+use crate::effects_plan::{Effect, EffectsPlan};
 use crate::error::RenderError;
 use crate::estimator::{Estimator, PhotonSink};
 use crate::film::Film;
@@ -83,7 +83,11 @@ fn passes(
     let clock = Instant::now();
     let lit = light(scene, settings, library, progress)?;
     stats.seconds.accel = clock.elapsed().as_secs_f64();
-    stats.effects = lit.plan.report(&stats.seconds);
+    stats.effects = lit.plan.report();
+    if lit.plan.direct {
+        stats.effects[Effect::DirectLight as usize].bytes = lit.lights.bytes();
+    }
+    stats.effects[Effect::EmissiveMeshes as usize].bytes = lit.lights.emitter_bytes();
 
     let work = Work { lit: &lit, settings, film, progress };
     match settings.gather.estimator {
@@ -118,7 +122,7 @@ impl Work<'_> {
         progress.check()?;
 
         let [elevation, azimuth] = parse_bins(&settings.pyramid.bins)?;
-        let bins = lit.plan.direction_bins.then_some(DirectionBins { elevation, azimuth });
+        let bins = lit.plan.direction_bins().then_some(DirectionBins { elevation, azimuth });
         // A single pass has nothing to be compared with and reads all photons.
         let sets = SETS.min(settings.gather.camera_samples as usize);
         let accumulator = Accumulator::new(&layout, lit.lights.total_flux().max_channel(), bins);
@@ -129,6 +133,7 @@ impl Work<'_> {
         progress.enter(Stage::Pyramid);
         let clock = Instant::now();
         stats.pyramid.build_bytes = layout.bytes() + accumulator.bytes();
+        let build_bin_bytes = accumulator.bin_bytes();
         let visible = |p, q| lit.accel.sees(p, q);
         let pyramid =
             Pyramid::build(accumulator, &layout, settings.pyramid.photons_per_cell, visible, || {
@@ -142,11 +147,29 @@ impl Work<'_> {
         stats.pyramid.glossy_cells = pyramid.glossy_cell_count();
         stats.pyramid.bins = bins.map_or(0, DirectionBins::count);
         stats.seconds.pyramid += clock.elapsed().as_secs_f64();
+        self.charge_pyramid(&pyramid, build_bin_bytes, stats);
         stats.estimator =
             EstimatorStats { name: "pyramid", bytes: stats.pyramid.bytes, seconds: stats.seconds.pyramid };
         let lookup = |set| PyramidLookup::new(lit, pyramid.view(set), settings.gather.retrace_distance);
         let lookups: [_; SETS] = std::array::from_fn(lookup);
         self.gather(lookups.each_ref(), stats)
+    }
+
+    /// Charges the pyramid to the effects that are read from it: bins to the glossy, all else to indirect light in general.
+    fn charge_pyramid(&self, pyramid: &Pyramid, build_bin_bytes: usize, stats: &mut Stats) {
+        if !self.lit.plan.indirect() {
+            return;
+        }
+        let bins_seconds =
+            if self.lit.plan.direction_bins() { pyramid.bins_time().as_secs_f64() } else { 0.0 };
+        let cell_bytes =
+            (stats.pyramid.build_bytes - build_bin_bytes).max(pyramid.bytes() - pyramid.bin_bytes());
+        let bins = &mut stats.effects[Effect::IndirectGlossy as usize];
+        bins.seconds += bins_seconds;
+        bins.bytes += build_bin_bytes.max(pyramid.bin_bytes());
+        let cells = &mut stats.effects[self.lit.plan.indirect_owner() as usize];
+        cells.seconds += stats.seconds.pyramid - bins_seconds;
+        cells.bytes += cell_bytes;
     }
 
     /// Traces the photons, dealt into `sets` sets.
@@ -158,6 +181,7 @@ impl Work<'_> {
         stats.photons.emitted = counts.emitted;
         stats.rays.photon = counts.segments;
         stats.seconds.photon_pass = clock.elapsed().as_secs_f64();
+        counts.costs.charge(&mut stats.effects, stats.seconds.photon_pass);
         Ok(())
     }
 
@@ -170,8 +194,8 @@ impl Work<'_> {
         let gathered = gather::run(&gatherers, self.film, stop, self.progress);
         stats.error = self.film.picture_error();
         stats.seconds.gather = clock.elapsed().as_secs_f64();
-        stats.effects = self.lit.plan.report(&stats.seconds);
         let gathered = gathered?;
+        gathered.costs.charge(&mut stats.effects, stats.seconds.gather);
         stats.rays += gathered.rays;
         stats.stopped_by = gathered.stopped_by;
         Ok(())
@@ -185,29 +209,32 @@ fn light<'a>(
     library: &Path,
     progress: &Progress,
 ) -> Result<LitScene<'a>, RenderError> {
-    let materials: Vec<PreparedMaterial> = MaterialTable::build(&scene.materials).iter().cloned().collect();
+    let mut materials: Vec<PreparedMaterial> =
+        MaterialTable::build(&scene.materials).iter().cloned().collect();
+    let mut world = scene.world.clone();
+    let plan = EffectsPlan::new(scene, &settings.effects, &mut materials, &mut world);
     let emission: Vec<_> = materials.iter().map(PreparedMaterial::emission).collect();
-    let lights = Lights::build(scene, &emission);
-    let plan = EffectsPlan::new(scene, &materials, &lights);
+    let lights = Lights::with_world(scene, &emission, &world);
     let proxies = lights.lamp_proxies();
     let accel = Accel::build(scene, &proxies, library, settings.render.threads as usize, progress)?;
-    Ok(LitScene { accel, materials, lights, plan })
+    Ok(LitScene { accel, materials, lights, world, plan })
 }
 
 /// The cells, over what the camera and its gather rays see.
 fn layout(lit: &LitScene<'_>, settings: &RenderSettings, progress: &Progress) -> Result<Layout, RenderError> {
     let scene = lit.accel.scene();
-    let seen = seen_bounds(gather::seen_points(lit, settings.render.seed), scene.bounds);
+    let seen = if lit.plan.indirect() { gather::seen_points(lit, settings.render.seed) } else { Vec::new() };
+    let seen = seen_bounds(seen, scene.bounds);
     let bounds = scene.bounds.map(Vec3::as_dvec3);
     let world_origin = -scene.space.center * scene.space.scale;
     let grid = Grid::new(seen, bounds, settings.pyramid.finest_resolution, world_origin);
     let classes =
         if settings.pyramid.normal_classes == "54" { NormalClasses::FiftyFour } else { NormalClasses::Six };
-    let reads = LobeSet::DIFFUSE | LobeSet::ROUGH;
     let mut triangles: Vec<(u32, u32)> = Vec::new();
-    for (index, object) in scene.objects.iter().enumerate().filter(|_| lit.plan.indirect) {
+    for (index, object) in scene.objects.iter().enumerate().filter(|_| lit.plan.indirect()) {
         let primitives = 0..object.mesh.triangles.len();
-        let received = primitives.filter(|&i| lit.materials[object.material(i)].classes().intersects(reads));
+        let received =
+            primitives.filter(|&i| lit.materials[object.material(i)].classes().intersects(LobeSet::READ));
         triangles.extend(received.map(|i| (index as u32, i as u32)));
     }
     let triangle = |i: usize| {

@@ -107,6 +107,41 @@ pub struct FilmSettings {
     pub tile_size: u32,
 }
 
+/// Whether an effect is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Switch {
+    /// Where something in the scene asks for it.
+    #[default]
+    Auto,
+    /// In any case.
+    On,
+    /// Never: its light is left out of the picture.
+    Off,
+}
+
+/// Switches of the effects.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct EffectSettings {
+    /// Light that surfaces the camera sees get straight from lights.
+    pub direct_light: Switch,
+    /// Light by way of diffuse surfaces.
+    pub indirect_diffuse: Switch,
+    /// Light by way of glossy surfaces.
+    pub indirect_glossy: Switch,
+    /// Light by way of mirrors and glass, on surfaces the camera sees.
+    pub caustics: Switch,
+    /// Mirrors, glass and sharp reflections.
+    pub mirrors_and_glass: Switch,
+    /// The world's light.
+    pub environment_light: Switch,
+    /// Light of emissive surfaces.
+    pub emissive_meshes: Switch,
+    /// Surfaces that let light straight through.
+    pub alpha_transparency: Switch,
+}
+
 /// Knobs of the machine.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -127,6 +162,8 @@ pub struct RenderSettings {
     pub pyramid: PyramidSettings,
     /// Final gather.
     pub gather: GatherSettings,
+    /// Effects.
+    pub effects: EffectSettings,
     /// Film.
     pub film: FilmSettings,
     /// Machine.
@@ -225,6 +262,9 @@ const fn int(minimum: u64, maximum: u64) -> Kind {
     Kind::Int { minimum, maximum }
 }
 
+/// Words of [`Switch`].
+const SWITCH: Kind = Kind::Enum { choices: &["auto", "on", "off"] };
+
 /// Words of [`EstimatorKind`].
 const ESTIMATORS: &[&str] = &[
     "pyramid",
@@ -255,6 +295,14 @@ pub const KNOBS: &[Knob] = &[
     knob("gather", "max_depth", int(1, 1000), "bounces", "Mirror, glass and short-ray bounces after which a path ends"),
     knob("gather", "estimator", Kind::Enum { choices: ESTIMATORS }, "", "Where gather rays read the light: the pyramid, or another method to measure it against"),
     knob("gather", "photons_per_estimate", int(2, 10_000), "photons", "Photons an estimate reaches to, where photons are read one by one; the pyramid does not use it"),
+    knob("effects", "direct_light", SWITCH, "", "Light that comes straight from lights to surfaces the camera sees; Off leaves it out"),
+    knob("effects", "indirect_diffuse", SWITCH, "", "Light that comes by way of diffuse surfaces; Off leaves it out, and its photons"),
+    knob("effects", "indirect_glossy", SWITCH, "", "Light that comes by way of glossy surfaces; Off leaves it out, and the direction bins"),
+    knob("effects", "caustics", SWITCH, "", "Light that mirrors and glass throw on surfaces the camera sees; Off leaves it out"),
+    knob("effects", "mirrors_and_glass", SWITCH, "", "Mirrors, glass and sharp reflections; Off makes them black"),
+    knob("effects", "environment_light", SWITCH, "", "Light of the world; Off makes the world black"),
+    knob("effects", "emissive_meshes", SWITCH, "", "Light of emissive surfaces; Off makes them dark"),
+    knob("effects", "alpha_transparency", SWITCH, "", "Light straight through transparent surfaces; Off makes them opaque"),
     knob("film", "filter", Kind::Enum { choices: &["blackman_harris", "box"] }, "", "Pixel filter"),
     knob("film", "filter_width", Kind::Float { minimum: 0.1, maximum: 10.0 }, "pixels", "Width of the pixel filter as in Cycles: a box is that wide, Blackman-Harris reaches that far to either side"),
     knob("film", "tile_size", int(4, 4096), "pixels", "Edge of the tiles the picture is cut into; changes nothing in the picture"),

@@ -4,6 +4,8 @@ use std::ops::AddAssign;
 
 use serde::Serialize;
 
+use crate::settings::Switch;
+
 /// Wall seconds of each pass.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Seconds {
@@ -90,14 +92,22 @@ pub struct EstimatorStats {
 pub struct EffectStats {
     /// Name of the effect.
     pub name: &'static str,
+    /// What the user asks.
+    pub switch: Switch,
     /// Whether the scene asks for it.
     pub called_for: bool,
-    /// What asks for it, or why nothing does.
+    /// Whether it is computed.
+    pub computed: bool,
+    /// What in the scene asks for it, or that nothing does.
     pub because: String,
-    /// The pass that computes it.
+    /// The passes that compute it.
     pub pass: &'static str,
-    /// Seconds of that pass; the pass may compute other effects too.
+    /// Wall seconds of work done for it alone: no second is counted for two effects.
     pub seconds: f64,
+    /// Most memory it took at a time.
+    pub bytes: usize,
+    /// Rays traced for it alone.
+    pub rays: u64,
 }
 
 /// Why there were no more passes over the picture.

@@ -3,6 +3,7 @@
 
 use glam::Vec3;
 
+use crate::bsdf::LobeSet;
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
 use crate::lit_scene::Surface;
@@ -28,7 +29,13 @@ impl Estimator for Path {
         Rgb::BLACK
     }
 
-    fn radiance(&self, _surface: &Surface<'_>, _footprint: Footprint, _rng: &mut Rng) -> Option<Rgb> {
+    fn radiance(
+        &self,
+        _surface: &Surface<'_>,
+        _lobes: LobeSet,
+        _footprint: Footprint,
+        _rng: &mut Rng,
+    ) -> Option<Rgb> {
         None
     }
 }

@@ -124,10 +124,15 @@ impl Estimator for PhotonMap {
     }
 
     /// The BSDF is evaluated for every photon.
-    fn radiance(&self, surface: &Surface<'_>, footprint: Footprint, _rng: &mut Rng) -> Option<Rgb> {
+    fn radiance(
+        &self,
+        surface: &Surface<'_>,
+        lobes: LobeSet,
+        footprint: Footprint,
+        _rng: &mut Rng,
+    ) -> Option<Rgb> {
         let bsdf = &surface.bsdf;
         let (p, ng) = self.place(surface.p, bsdf.frame.side(), bsdf.wo(), footprint)?;
-        let lobes = LobeSet::DIFFUSE | LobeSet::ROUGH;
         Some(self.disk(p).sum(ng, |flux, wi| flux * bsdf.eval(wi, lobes, TransportMode::Radiance)))
     }
 }

@@ -40,6 +40,8 @@ pub struct PreparedMaterial {
     constant_lambert: Option<Rgb>,
     mean_emission: Rgb,
     specular_tint: Rgb,
+    /// Lobes of these classes are not made.
+    left_out: LobeSet,
 }
 
 impl PreparedMaterial {
@@ -137,6 +139,30 @@ impl PreparedMaterial {
             .sum()
     }
 
+    /// Leaves out all lobes of the classes `lobes`: what they would scatter is absorbed.
+    pub fn leave_out_lobes(&mut self, lobes: LobeSet) {
+        self.left_out = self.left_out | lobes;
+        self.classes = self.classes.without(lobes);
+    }
+
+    /// Leaves out what the material emits.
+    pub fn leave_out_emission(&mut self) {
+        (self.bare_emission, self.mean_emission) = (Rgb::BLACK, Rgb::BLACK);
+        for (_, closure) in &mut self.closures {
+            if let PreparedClosure::Principled(principled) = closure {
+                principled.emission = Rgb::BLACK;
+            }
+        }
+    }
+
+    /// Leaves out what passes straight through: it is absorbed.
+    pub fn leave_out_transparency(&mut self) {
+        self.transparency = Rgb::BLACK;
+        if self.closures.is_empty() {
+            self.constant_lambert = Some(self.lambert);
+        }
+    }
+
     /// Classes of the lobes that can occur.
     #[must_use]
     pub fn classes(&self) -> LobeSet {
@@ -164,7 +190,9 @@ impl PreparedMaterial {
             PreparedClosure::Glass(_) | PreparedClosure::Refraction { .. } => true,
             PreparedClosure::Principled(principled) => principled.transmits(),
         };
-        self.transparency.is_black() && !self.closures.iter().any(|(_, closure)| passes(closure))
+        let refracts = !self.left_out.intersects(LobeSet::DELTA);
+        self.transparency.is_black()
+            && !(refracts && self.closures.iter().any(|(_, closure)| passes(closure)))
     }
 
     /// The albedo, where the material scatters as one constant Lambert lobe and nothing passes through it. A black
@@ -200,6 +228,9 @@ impl PreparedMaterial {
         }
         for (slot, (weight, closure)) in (1..).step_by(principled::LOBES).zip(&self.closures) {
             bsdf.emission += closure.push(&mut bsdf.lobes, *weight, frame.entering, cos, slot);
+        }
+        if self.left_out != LobeSet::EMPTY {
+            bsdf.lobes.retain(|lobe| !self.left_out.intersects(lobe.class));
         }
         bsdf
     }

@@ -61,6 +61,10 @@ impl LobeSet {
     pub const DELTA: Self = Self(8);
     /// Every class with a finite density.
     pub const NON_DELTA: Self = Self(7);
+    /// Classes whose light can be read where a gather ray ends.
+    pub const READ: Self = Self(3);
+    /// Classes that are followed and never read: mirrors, refraction and sharp glossy lobes.
+    pub const FOLLOWED: Self = Self(12);
     /// Every class.
     pub const ALL: Self = Self(15);
 
@@ -68,6 +72,12 @@ impl LobeSet {
     #[must_use]
     pub const fn intersects(self, other: Self) -> bool {
         self.0 & other.0 != 0
+    }
+
+    /// The classes that are in both sets.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self(self.0 & other.0)
     }
 
     /// The classes of this set that are not in `other`.

@@ -8,13 +8,13 @@ use glam::DVec2;
 use crate::accel::{Hit, LANES, Packet, Ray};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
+use crate::effects_plan::Effect;
 use crate::estimator::{Estimator, Footprint};
 use crate::film::{BLOCK, PixelSample, TileRect};
 use crate::lit_scene::ray_kind;
 use crate::sampling::{PixelSeeds, Rng, hash};
 use crate::scene::visibility;
 use crate::settings::GatherSampling;
-use crate::stats::RayCounts;
 
 use super::Gatherer;
 use super::camera::camera_ray;
@@ -23,6 +23,9 @@ use super::direct::{ShadowRay, Shares, lambert_shadow_ray, shadow_ray, transmitt
 use super::lambert::LambertLanes;
 use super::path::Sampled;
 use super::vertex::{GatherRay, Vertex, rotate};
+
+/// One block in so many is clocked, to tell what each effect costs.
+const CLOCKED: u64 = 64;
 
 /// Work on one block of pixels.
 pub(super) struct Block<'a, 'g, E: Estimator> {
@@ -61,20 +64,23 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         }
     }
 
-    /// Rays traced so far, and look-ups that wait for their answer.
-    pub(super) fn finish(self) -> (RayCounts, Vec<Deferred<E::Place>>) {
-        (self.traces.rays, self.traces.deferred)
+    /// Rays traced so far, what they cost, and look-ups that wait for their answer.
+    pub(super) fn finish(self) -> Traces<E::Place> {
+        self.traces
     }
 
     /// Computes the pixels of the block whose lowest corner is (x, y) and writes those inside `tile` to `out`.
     #[inline(always)]
     pub(super) fn run(&mut self, x: u32, y: u32, tile: TileRect, out: &mut [PixelSample]) {
         let deferred = self.traces.deferred.len();
+        let key = u64::from(self.sample) << 48 | u64::from(y) << 24 | u64::from(x);
+        self.traces.meter.begin(hash(u64::from(self.gatherer.seed), key).is_multiple_of(CLOCKED));
         self.start(x, y);
         if self.lambert.any() || self.has_vertices {
             self.light();
             self.gather();
         }
+        self.traces.meter.end();
         let pixel = |px: u32, py: u32| ((py - tile.y) * tile.width + px - tile.x) as usize;
         for lane in 0..LANES as u32 {
             let (px, py) = (x + lane % BLOCK, y + lane / BLOCK);
@@ -147,41 +153,51 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     fn follow_camera(&mut self, lane: usize, mut ray: Ray, hit: Option<Hit>) {
         let g = self.gatherer;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.sample) << 16 | 1));
-        let mut sampled =
-            Sampled { pdf: None, shares: Shares::EVEN, kind: visibility::CAMERA, lit_side: None };
+        let mut sampled = Sampled {
+            pdf: None,
+            shares: Shares::EVEN,
+            kind: visibility::CAMERA,
+            light: None,
+            lit_side: None,
+        };
+        let owner = self.traces.meter.owner();
         let (mut first, mut throughput) = (Some(hit), Rgb::WHITE);
         let transparent_film = g.lit.accel.scene().world.film_transparent;
         for depth in 0..g.max_depth {
-            let met = g.meet(ray, first.take(), sampled, &mut rng);
+            let met = g.meet(ray, first.take(), sampled, &mut rng, &mut self.traces.meter);
             let sample = &mut self.samples[lane];
             if met.surface.is_some() || depth > 0 || !transparent_film {
                 sample.direct += throughput * met.light;
                 sample.alpha = 1.0;
             }
-            let Some(surface) = met.surface else { return };
+            let Some(surface) = met.surface else { break };
             throughput *= met.through;
             if surface.bsdf.has(LobeSet::NON_DELTA) {
                 self.vertices[lane] = Some(Box::new(Vertex { surface, throughput }));
                 self.has_vertices = true;
-                return;
+                break;
             }
             let sample =
                 surface.bsdf.sample(rng.draw(), rng.draw2(), LobeSet::DELTA, TransportMode::Radiance);
-            let Some(sample) = sample else { return };
+            let Some(sample) = sample else { break };
+            self.traces.meter.enter(Effect::MirrorsAndGlass);
+            self.traces.meter.count(Effect::MirrorsAndGlass, 1);
             throughput *= sample.weight;
             sampled.kind = ray_kind(&sample);
             ray = Ray::leaving(surface.p, surface.ng, sample.wi, sampled.kind | g.lit.accel.lamp_bit());
             self.traces.rays.camera += 1;
         }
+        self.traces.meter.back(owner);
     }
 
     /// Direct light: shadow rays of the camera sample.
     #[inline(always)]
     fn light(&mut self) {
         let g = self.gatherer;
-        if !g.lit.plan.direct {
+        if !(g.lit.plan.direct && g.lit.plan.light_samples) {
             return;
         }
+        let owner = self.traces.meter.enter(Effect::DirectLight);
         for i in 0..g.light_samples {
             let index = self.sample * g.light_samples + i;
             let [x, y] = g.light_set.points(index as usize, &self.seeds);
@@ -193,6 +209,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
                 if let Some(shadow) = traced {
                     self.packet.set(lane, &shadow.ray, shadow.t_far);
                     self.traces.rays.shadow += 1;
+                    self.traces.meter.count(Effect::DirectLight, 1);
                 }
             }
             if !self.packet.is_empty() {
@@ -201,7 +218,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             for (lane, shadow) in shadows.iter().enumerate() {
                 let Some(shadow) = shadow else { continue };
                 let seen = if !self.packet.is_set(lane) {
-                    transmittance(g.lit, shadow, &mut self.traces.rays.shadow)
+                    transmittance(g.lit, shadow, &mut self.traces)
                 } else if self.packet.is_free(lane) {
                     Rgb::WHITE
                 } else {
@@ -210,6 +227,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
                 self.samples[lane].direct += shadow.radiance * seen * g.per_light_sample;
             }
         }
+        self.traces.meter.back(owner);
     }
 
     /// A shadow ray of one lane, its radiance as the camera sees it.
@@ -221,7 +239,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         }
         let vertex = self.vertices[lane].as_ref()?;
         let sample = g.lit.lights.sample_direct(vertex.surface.receiver(), u)?;
-        let mut shadow = shadow_ray(&vertex.surface, &sample, LobeSet::ALL, g.shares)?;
+        let mut shadow = shadow_ray(&vertex.surface, &sample, LobeSet::ALL, LobeSet::ALL, g.shares)?;
         shadow.radiance *= vertex.throughput;
         Some(shadow)
     }
@@ -229,11 +247,23 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     /// Gather rays of the camera sample.
     #[inline(always)]
     fn gather(&mut self) {
+        let plan = &self.gatherer.lit.plan;
+        if !plan.gathers {
+            return;
+        }
+        let owner = self.traces.meter.owner();
         for index in self.gatherer.rays_of_sample(self.sample) {
             let pdfs = self.aim(index);
+            let sharp = self.has_vertices && self.others.iter().flatten().all(|ray| ray.sharp);
+            let effect =
+                if sharp && !self.lambert.any() { Effect::MirrorsAndGlass } else { plan.gather_owner() };
+            self.traces.meter.enter(effect);
             self.gatherer.lit.accel.intersect_packet(&mut self.packet);
+            let rays = (0..LANES).filter(|&lane| self.packet.is_set(lane)).count();
+            self.traces.meter.count(effect, rays as u64);
             self.receive(&pdfs, index);
         }
+        self.traces.meter.back(owner);
     }
 
     /// Puts gather ray `index` of every lane into the packet; gives the densities of those that start on constant Lambert
@@ -335,15 +365,20 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let g = self.gatherer;
         let weight = gather_ray.weight;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(index) << 16 | 2));
+        let light = g.lit.plan.direct.then_some(Effect::DirectLight);
         let lit_side = match &self.vertices[lane] {
             Some(vertex) => vertex.surface.bsdf.lit_side(),
             None => Some(self.lambert.ns[lane]),
         };
-        let sampled = Sampled { pdf: gather_ray.pdf, shares: g.shares, kind: gather_ray.kind, lit_side };
-        let met = g.meet(self.packet.ray(lane), Some(hit), sampled, &mut rng);
+        let sampled =
+            Sampled { pdf: gather_ray.pdf, shares: g.shares, kind: gather_ray.kind, light, lit_side };
+        let met = g.meet(self.packet.ray(lane), Some(hit), sampled, &mut rng, &mut self.traces.meter);
         let sample = &mut self.samples[lane];
-        sample.direct += weight * met.light * g.direct_share;
-        if let Some(surface) = met.surface {
+        // What a mirror shows is no direct light, though it belongs to the same layer of the picture.
+        if g.lit.plan.direct || gather_ray.pdf.is_none() {
+            sample.direct += weight * met.light * g.direct_share;
+        }
+        if let Some(surface) = met.surface.filter(|_| g.lit.plan.follows()) {
             let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };
             let weight = weight * met.through;
             let target = Target { traces: &mut self.traces, lane, weight };

@@ -2,7 +2,9 @@
 
 use rayon::prelude::*;
 
+use crate::bsdf::LobeSet;
 use crate::color::Rgb;
+use crate::effects_plan::Meter;
 use crate::error::RenderError;
 use crate::estimator::{Estimator, Footprint, reflectance};
 use crate::film::{Film, PixelSample};
@@ -30,11 +32,12 @@ pub(super) struct Deferred<P> {
 pub(super) struct Traces<P> {
     pub(super) rays: RayCounts,
     pub(super) deferred: Vec<Deferred<P>>,
+    pub(super) meter: Meter,
 }
 
 impl<P> Default for Traces<P> {
     fn default() -> Self {
-        Self { rays: RayCounts::default(), deferred: Vec::new() }
+        Self { rays: RayCounts::default(), deferred: Vec::new(), meter: Meter::default() }
     }
 }
 
@@ -107,6 +110,7 @@ impl<P: Copy> Target<'_, P> {
         &mut self,
         estimator: &E,
         surface: &Surface<'_>,
+        lobes: LobeSet,
         footprint: Footprint,
         throughput: Rgb,
         rng: &mut Rng,
@@ -114,8 +118,8 @@ impl<P: Copy> Target<'_, P> {
         if E::DEFERS {
             let bsdf = &surface.bsdf;
             let place = estimator.place(surface.p, bsdf.frame.side(), bsdf.wo(), footprint)?;
-            return Some(self.read(estimator, place, throughput * reflectance::<E>(surface)));
+            return Some(self.read(estimator, place, throughput * reflectance::<E>(surface, lobes)));
         }
-        Some(throughput * estimator.radiance(surface, footprint, rng)?)
+        Some(throughput * estimator.radiance(surface, lobes, footprint, rng)?)
     }
 }

@@ -5,11 +5,13 @@ use std::f32::consts::FRAC_1_PI;
 use crate::accel::{OFFSET, Ray};
 use crate::bsdf::LobeSet;
 use crate::color::Rgb;
+use crate::effects_plan::{Effect, Meter};
 use crate::light::DirectSample;
 use crate::lit_scene::{LitScene, Surface, lobes_lit};
 use crate::sampling::power_heuristic;
 use crate::scene::visibility;
 
+use super::deferred::Traces;
 use super::lambert::LambertLanes;
 
 /// Transparent surfaces a shadow ray passes before it counts as blocked.
@@ -48,16 +50,18 @@ pub(super) struct ShadowRay {
     pub(super) casts_shadow: bool,
 }
 
-/// The shadow ray for a light sample; `None` where the surface does not send this light to the viewer.
+/// The shadow ray for a light sample; `None` where the surface does not send this light to the viewer. Directions of the
+/// BSDF are drawn from `lobes`; the light of those that are `counted`, all or some of them, is asked for.
 #[must_use]
 pub(super) fn shadow_ray(
     surface: &Surface<'_>,
     sample: &DirectSample,
     lobes: LobeSet,
+    counted: LobeSet,
     shares: Shares,
 ) -> Option<ShadowRay> {
     let bsdf = &surface.bsdf;
-    let lit = lobes.without(LobeSet::ALL.without(lobes_lit(sample.visibility)));
+    let lit = counted.and(lobes_lit(sample.visibility));
     let (f, pdf_lit) = bsdf.eval_with_pdf(sample.wi, lit);
     if f.is_black() {
         return None;
@@ -65,7 +69,7 @@ pub(super) fn shadow_ray(
     let weight = if sample.is_delta {
         1.0
     } else {
-        let pdf_bsdf = if lit == lobes { pdf_lit } else { bsdf.pdf(sample.wi, lobes) };
+        let pdf_bsdf = if bsdf.has(lobes.without(lit)) { bsdf.pdf(sample.wi, lobes) } else { pdf_lit };
         power_heuristic(shares.light * sample.pdf_solid_angle, shares.bsdf * pdf_bsdf)
     };
     let cos = sample.wi.dot(bsdf.frame.ns).abs();
@@ -104,14 +108,23 @@ fn reach(distance: f32) -> f32 {
 
 /// Share of light that reaches the end of a shadow ray through transparent surfaces.
 #[must_use]
-pub(super) fn transmittance(lit: &LitScene<'_>, shadow: &ShadowRay, rays: &mut u64) -> Rgb {
+pub(super) fn transmittance<P>(lit: &LitScene<'_>, shadow: &ShadowRay, traces: &mut Traces<P>) -> Rgb {
     if !shadow.casts_shadow {
         return Rgb::WHITE;
     }
+    traces.meter.count_own(1);
     if !lit.plan.transparency {
-        *rays += 1;
+        traces.rays.shadow += 1;
         return if lit.accel.occluded(&shadow.ray, shadow.t_far) { Rgb::BLACK } else { Rgb::WHITE };
     }
+    let owner = traces.meter.owner();
+    let through = transparencies(lit, shadow, &mut traces.rays.shadow, &mut traces.meter);
+    traces.meter.back(owner);
+    through
+}
+
+/// Product of the transparencies along a shadow ray.
+fn transparencies(lit: &LitScene<'_>, shadow: &ShadowRay, rays: &mut u64, meter: &mut Meter) -> Rgb {
     let (mut ray, mut left, mut through) = (shadow.ray, shadow.t_far, Rgb::WHITE);
     for _ in 0..MAX_TRANSPARENT {
         *rays += 1;
@@ -121,6 +134,8 @@ pub(super) fn transmittance(lit: &LitScene<'_>, shadow: &ShadowRay, rays: &mut u
         if through.is_black() {
             return through;
         }
+        meter.enter(Effect::AlphaTransparency);
+        meter.count(Effect::AlphaTransparency, 1);
         left -= hit.t;
         ray = Ray::leaving(surface.p, surface.ng, ray.direction, ray.mask);
     }

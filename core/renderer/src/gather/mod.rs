@@ -30,6 +30,7 @@ use rayon::prelude::*;
 use crate::accel::Ray;
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
+use crate::effects_plan::Costs;
 use crate::error::RenderError;
 use crate::estimator::Estimator;
 use crate::film::{BLOCK, Film, PixelSample};
@@ -44,7 +45,7 @@ use crate::stats::{RayCounts, StoppedBy};
 use block::{Block, widest_stratum};
 use camera::camera_ray;
 use convergence::Convergence;
-use deferred::OpenTile;
+use deferred::{OpenTile, Traces};
 use direct::Shares;
 pub use floor::{TraceFloor, trace_floor};
 pub use pyramid_lookup::PyramidLookup;
@@ -75,6 +76,8 @@ pub struct Gatherer<'a, E> {
     widest: f32,
     /// By material: albedo / π where all there is to know is a constant Lambert reflection.
     plain: Vec<Option<Rgb>>,
+    /// The same, where its light is read.
+    plain_read: Vec<Option<Rgb>>,
 }
 
 impl<'a, E: Estimator> Gatherer<'a, E> {
@@ -88,6 +91,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             let albedo = material.constant_lambert().filter(|_| material.emission().is_black());
             albedo.map(|albedo| albedo * std::f32::consts::FRAC_1_PI)
         });
+        let plain: Vec<Option<Rgb>> = plain.collect();
+        let reads_diffuse = lit.plan.reads.intersects(LobeSet::DIFFUSE);
         Self {
             lit,
             estimator,
@@ -108,7 +113,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             per_ray: 1.0 / gather.rays as f32,
             direct_share: gather.camera_samples as f32 / gather.rays as f32,
             widest: widest_stratum(gather.rays),
-            plain: plain.collect(),
+            plain_read: if reads_diffuse { plain.clone() } else { vec![None; plain.len()] },
+            plain,
         }
     }
 
@@ -132,6 +138,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
 pub struct Gathered {
     /// Rays traced.
     pub rays: RayCounts,
+    /// What each effect cost.
+    pub costs: Costs,
     /// Why there were no more passes.
     pub stopped_by: StoppedBy,
 }
@@ -148,7 +156,8 @@ pub fn run<E: Estimator>(
     progress: &Progress,
 ) -> Result<Gathered, RenderError> {
     let passes = gatherers[0].camera_samples;
-    let (rays, done) = (Mutex::new(RayCounts::default()), AtomicUsize::new(0));
+    let counted = Mutex::new((RayCounts::default(), Costs::default()));
+    let done = AtomicUsize::new(0);
     let tiles = film.tiles().len();
     let instructions = pulp::Arch::new();
     let mut convergence = Convergence::new(progress.elapsed());
@@ -159,9 +168,12 @@ pub fn run<E: Estimator>(
         let gatherer = &gatherers[half];
         let sample = gatherer.sample_of_pass(pass);
         let finished = gatherer.pass_in_batches(sample, film, |index| {
-            let (counts, open) =
+            let (rays, costs, open) =
                 instructions.dispatch(TileWork { gatherer, sample, film, index, progress })?;
-            *rays.lock().unwrap_or_else(PoisonError::into_inner) += counts;
+            let mut counted = counted.lock().unwrap_or_else(PoisonError::into_inner);
+            counted.0 += rays;
+            counted.1 += costs;
+            drop(counted);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             let share = done as f64 / (tiles * passes as usize) as f64;
             progress.set_fraction(stop.fraction(share, progress.elapsed()));
@@ -183,7 +195,8 @@ pub fn run<E: Estimator>(
         progress.set_passes(pass + 1, passes);
     }
     progress.set_fraction(1.0);
-    Ok(Gathered { rays: rays.into_inner().unwrap_or_else(PoisonError::into_inner), stopped_by })
+    let (rays, costs) = counted.into_inner().unwrap_or_else(PoisonError::into_inner);
+    Ok(Gathered { rays, costs, stopped_by })
 }
 
 /// A tile of a pass, for whichever vector instructions this processor has.
@@ -198,7 +211,7 @@ struct TileWork<'w, 'a, E> {
 
 impl<E: Estimator> pulp::NullaryFnOnce for TileWork<'_, '_, E> {
     /// What was counted, and the tile itself where its light is not complete.
-    type Output = Result<(RayCounts, Option<OpenTile<E::Place>>), RenderError>;
+    type Output = Result<(RayCounts, Costs, Option<OpenTile<E::Place>>), RenderError>;
 
     // What is inlined into this function, and only that, is compiled for the wider instructions.
     #[inline(always)]
@@ -212,12 +225,12 @@ impl<E: Estimator> pulp::NullaryFnOnce for TileWork<'_, '_, E> {
                 block.run(x, y, tile, &mut samples);
             }
         }
-        let (counts, deferred) = block.finish();
+        let Traces { rays, deferred, meter } = block.finish();
         if E::DEFERS {
-            return Ok((counts, Some(OpenTile { index: self.index, samples, deferred })));
+            return Ok((rays, meter.costs, Some(OpenTile { index: self.index, samples, deferred })));
         }
         self.film.take(self.index, samples);
-        Ok((counts, None))
+        Ok((rays, meter.costs, None))
     }
 }
 

@@ -8,6 +8,7 @@ use glam::Vec3;
 use crate::accel::{Hit, Ray};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
+use crate::effects_plan::{Effect, Meter};
 use crate::estimator::{Estimator, Footprint};
 use crate::light::Receiver;
 use crate::lit_scene::{Surface, ray_kind};
@@ -15,9 +16,8 @@ use crate::sampling::Rng;
 use crate::scene::visibility;
 
 use super::Gatherer;
-use super::deferred::Target;
+use super::deferred::{Target, Traces};
 use super::direct::{Shares, shadow_ray, transmittance};
-use crate::stats::RayCounts;
 
 /// Transparent surfaces a ray passes before it ends.
 const MAX_TRANSPARENT: u32 = 64;
@@ -34,6 +34,8 @@ pub(super) struct Sampled {
     pub(super) shares: Shares,
     /// Kind of the ray, a bit of [`visibility`].
     pub(super) kind: u32,
+    /// What the light it meets is for; `None` for what the camera sees.
+    pub(super) light: Option<Effect>,
     /// [`Bsdf::lit_side`](crate::bsdf::Bsdf::lit_side) of the surface it left.
     pub(super) lit_side: Option<Vec3>,
 }
@@ -61,10 +63,25 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
     /// Follows a ray to the surface it ends at. `first` is its first hit if that is known already.
     pub(super) fn meet(
         &self,
+        ray: Ray,
+        first: Option<Option<Hit>>,
+        sampled: Sampled,
+        rng: &mut Rng,
+        meter: &mut Meter,
+    ) -> Met<'a> {
+        let owner = meter.owner();
+        let met = self.meet_first(ray, first, sampled, rng, meter);
+        meter.back(owner);
+        met
+    }
+
+    fn meet_first(
+        &self,
         mut ray: Ray,
         first: Option<Option<Hit>>,
         sampled: Sampled,
         rng: &mut Rng,
+        meter: &mut Meter,
     ) -> Met<'a> {
         let mut met = Met { light: Rgb::BLACK, surface: None, distance: 0.0, through: Rgb::WHITE };
         let (from, lit) = (Receiver { p: ray.origin, normal: sampled.lit_side }, self.lit);
@@ -75,20 +92,26 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 hit = lit.accel.intersect(&Ray { mask: ray.mask & !visibility::LAMP, ..ray });
                 let end = hit.map_or(f32::INFINITY, |hit| met.distance + hit.t);
                 let (span, through) = (met.distance..end, met.through);
+                let owner = meter.enter_if(sampled.light);
                 lit.lights.lamps_crossed(from, ray.direction, span, sampled.kind, &mut |radiance, pdf| {
                     met.light += through * radiance * sampled.weight(pdf);
                 });
+                meter.back(owner);
             }
             let Some(hit) = hit else {
+                let world = (!lit.world.radiance.is_black()).then_some(Effect::EnvironmentLight);
+                meter.enter_if(world.or(sampled.light));
                 met.light += met.through * self.escaped(from, ray.direction, sampled);
                 return met;
             };
             let surface = lit.surface(&ray, hit);
             met.distance += hit.t;
             if !surface.bsdf.emission.is_black() {
+                let owner = meter.enter(Effect::EmissiveMeshes);
                 let (direction, distance) = (ray.direction, met.distance);
                 let pdf = lit.lights.emitter_pdf(from, hit.object, hit.primitive, direction, distance);
                 met.light += met.through * surface.bsdf.emission * sampled.weight(pdf);
+                meter.back(owner);
             }
             let transparency = surface.bsdf.transparency;
             let chance = transparency.mean().clamp(0.0, 1.0);
@@ -99,6 +122,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             }
             met.through = met.through * transparency * (1.0 / chance);
             ray = Ray::leaving(surface.p, surface.ng, ray.direction, ray.mask);
+            meter.enter(Effect::AlphaTransparency);
+            meter.count(Effect::AlphaTransparency, 1);
         }
         met.through = Rgb::BLACK;
         met
@@ -106,7 +131,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
 
     /// Light from outside the scene.
     fn escaped(&self, from: Receiver, direction: Vec3, sampled: Sampled) -> Rgb {
-        let world = &self.lit.accel.scene().world;
+        let world = &self.lit.world;
         let mut light = if world.visibility & sampled.kind == 0 { Rgb::BLACK } else { world.radiance };
         self.lit.lights.suns(from, direction, sampled.kind, &mut |radiance, pdf| {
             light += radiance * sampled.weight(pdf);
@@ -126,11 +151,14 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         let mut radiance = Rgb::BLACK;
         let mut throughput = Rgb::WHITE;
         let (mut surface, mut footprint) = (surface, footprint);
+        // What light counts for that comes through mirrors and glass: caustics, or the look-up that a followed vertex replaces.
+        let mut light = self.lit.plan.caustics.then_some(Effect::Caustics);
+        let owner = target.traces.meter.owner();
         for depth in 0..self.max_depth {
-            let lobes = match target.radiance(self.estimator, &surface, footprint, throughput, rng) {
+            let lobes = match self.read(&surface, footprint, throughput, rng, &mut target) {
                 Some(read) => {
                     radiance += read;
-                    LobeSet::SHARP | LobeSet::DELTA
+                    LobeSet::FOLLOWED
                 }
                 None => {
                     target.traces.rays.retraced += 1;
@@ -141,7 +169,13 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 break;
             }
             if lobes.intersects(LobeSet::NON_DELTA) {
-                radiance += throughput * self.one_light(&surface, lobes, rng, &mut target.traces.rays);
+                let followed = if light.is_some() { LobeSet::FOLLOWED } else { LobeSet::EMPTY };
+                let counted = lobes.and(self.lit.plan.reads | followed);
+                let replaces = lobes.intersects(LobeSet::READ);
+                let effect = if replaces { Some(self.lit.plan.indirect_owner()) } else { light };
+                let before = target.traces.meter.enter_if(effect);
+                radiance += throughput * self.one_light(&surface, lobes, counted, rng, target.traces);
+                target.traces.meter.back(before);
             }
             let sample = surface.bsdf.sample(rng.draw(), rng.draw2(), lobes, TransportMode::Radiance);
             let Some(sample) = sample else { break };
@@ -154,6 +188,9 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 }
                 throughput = throughput * (1.0 / survival);
             }
+            if !self.pass(&mut light, sample.class, &mut target.traces.meter) {
+                break;
+            }
             let kind = ray_kind(&sample);
             let ray = Ray::leaving(surface.p, surface.ng, sample.wi, kind | self.lit.accel.lamp_bit());
             target.traces.rays.gather += 1;
@@ -161,12 +198,16 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             let readable = hit.filter(|_| !sample.is_delta).and_then(|hit| self.readable(&ray, &hit, 0.0));
             if let Some(readable) = readable {
                 let throughput = throughput * readable.reflectance;
-                return radiance + target.read(self.estimator, readable.place, throughput);
+                radiance += target.read(self.estimator, readable.place, throughput);
+                break;
             }
             let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
             let lit_side = surface.bsdf.lit_side();
-            let met = self.meet(ray, Some(hit), Sampled { pdf, shares: Shares::EVEN, kind, lit_side }, rng);
-            radiance += throughput * met.light;
+            let sampled = Sampled { pdf, shares: Shares::EVEN, kind, light, lit_side };
+            let met = self.meet(ray, Some(hit), sampled, rng, &mut target.traces.meter);
+            if light.is_some() {
+                radiance += throughput * met.light;
+            }
             throughput *= met.through;
             let Some(next) = met.surface else { break };
             footprint = if sample.is_delta {
@@ -175,19 +216,66 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 Footprint { solid_angle: 0.0, travelled: met.distance, sharp: false }
             };
             surface = next;
+            target.traces.meter.back(owner);
         }
+        target.traces.meter.back(owner);
         radiance
     }
 
-    /// Direct light at a vertex that is followed: one light sample against one direction of the BSDF.
-    fn one_light(&self, surface: &Surface<'_>, lobes: LobeSet, rng: &mut Rng, rays: &mut RayCounts) -> Rgb {
-        if !self.lit.plan.direct {
+    /// Radiance of the lobes that are read, towards where the ray came from, times `throughput`; `None` where the ray has to
+    /// be followed instead.
+    fn read(
+        &self,
+        surface: &Surface<'_>,
+        footprint: Footprint,
+        throughput: Rgb,
+        rng: &mut Rng,
+        target: &mut Target<'_, E::Place>,
+    ) -> Option<Rgb> {
+        let reads = self.lit.plan.reads;
+        if !surface.bsdf.has(reads.and(LobeSet::ROUGH)) {
+            return target.radiance(self.estimator, surface, reads, footprint, throughput, rng);
+        }
+        let owner = target.traces.meter.enter(Effect::IndirectGlossy);
+        let read = target.radiance(self.estimator, surface, reads, footprint, throughput, rng);
+        target.traces.meter.back(owner);
+        read
+    }
+
+    /// Notes a lobe of class `class` that a path goes on through, and what light it meets from there counts for. False where
+    /// nothing does.
+    fn pass(&self, light: &mut Option<Effect>, class: LobeSet, meter: &mut Meter) -> bool {
+        let plan = &self.lit.plan;
+        if LobeSet::FOLLOWED.intersects(class) {
+            meter.enter(Effect::MirrorsAndGlass);
+            meter.count(Effect::MirrorsAndGlass, 1);
+        } else {
+            meter.count(plan.indirect_owner(), 1);
+            *light = plan.reads.intersects(class).then_some(plan.indirect_owner());
+        }
+        light.is_some() || plan.indirect()
+    }
+
+    /// Direct light at a vertex that is followed: one light sample against one direction of the BSDF, drawn from `lobes`. Of
+    /// these the light of the `counted` ones is wanted.
+    fn one_light(
+        &self,
+        surface: &Surface<'_>,
+        lobes: LobeSet,
+        counted: LobeSet,
+        rng: &mut Rng,
+        traces: &mut Traces<E::Place>,
+    ) -> Rgb {
+        if !self.lit.plan.light_samples {
             return Rgb::BLACK;
         }
         let u = [rng.draw(), rng.draw(), rng.draw()];
+        if !surface.bsdf.has(counted) {
+            return Rgb::BLACK;
+        }
         let sample = self.lit.lights.sample_direct(surface.receiver(), u);
-        let shadow = sample.and_then(|sample| shadow_ray(surface, &sample, lobes, Shares::EVEN));
-        shadow
-            .map_or(Rgb::BLACK, |shadow| shadow.radiance * transmittance(self.lit, &shadow, &mut rays.shadow))
+        let shadow = sample.and_then(|sample| shadow_ray(surface, &sample, lobes, counted, Shares::EVEN));
+        let Some(shadow) = shadow else { return Rgb::BLACK };
+        shadow.radiance * transmittance(self.lit, &shadow, traces)
     }
 }

@@ -59,7 +59,13 @@ impl Estimator for PyramidLookup<'_> {
     }
 
     /// From the cell's irradiance and, for glossy lobes, its direction bins.
-    fn radiance(&self, surface: &Surface<'_>, footprint: Footprint, rng: &mut Rng) -> Option<Rgb> {
+    fn radiance(
+        &self,
+        surface: &Surface<'_>,
+        lobes: LobeSet,
+        footprint: Footprint,
+        rng: &mut Rng,
+    ) -> Option<Rgb> {
         if self.too_short(surface, footprint) {
             return None;
         }
@@ -67,7 +73,7 @@ impl Estimator for PyramidLookup<'_> {
         let level = self.pyramid.level_for(footprint.area());
         let class = self.pyramid.class(bsdf.frame.side());
         let mut radiance = Rgb::BLACK;
-        if bsdf.has(LobeSet::DIFFUSE) {
+        if bsdf.has(lobes.and(LobeSet::DIFFUSE)) {
             let irradiance = self.pyramid.irradiance(surface.p, class, level);
             radiance += bsdf.diffuse_albedo() * irradiance * std::f32::consts::FRAC_1_PI;
         }
@@ -75,7 +81,9 @@ impl Estimator for PyramidLookup<'_> {
             let material = self.lit.accel.material(surface.hit.object, surface.hit.primitive);
             let tint = self.lit.materials[material].specular_tint();
             let shift = [rng.draw() - 0.5, rng.draw() - 0.5];
-            radiance += tint * self.pyramid.glossy_radiance(surface.p, class, level, bsdf.wo(), shift);
+            if lobes.intersects(LobeSet::ROUGH) {
+                radiance += tint * self.pyramid.glossy_radiance(surface.p, class, level, bsdf.wo(), shift);
+            }
         }
         Some(radiance)
     }

@@ -22,7 +22,7 @@ impl<E: Estimator> Gatherer<'_, E> {
             return None;
         }
         let (ng, material) = self.lit.accel.triangle(hit.object, hit.primitive);
-        let albedo_over_pi = self.plain[material]?;
+        let albedo_over_pi = self.plain_read[material]?;
         let side = Side::met(ng, ray.direction);
         let footprint = Footprint { solid_angle, travelled: hit.t, sharp: false };
         let place =

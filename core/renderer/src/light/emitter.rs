@@ -64,6 +64,11 @@ impl MeshEmitter {
         })
     }
 
+    /// Memory (bytes).
+    pub(super) fn bytes(&self) -> usize {
+        self.triangles.len() * size_of::<u32>() + self.cdf.bytes()
+    }
+
     /// Flux emitted by both sides together.
     pub(super) fn flux(&self) -> Rgb {
         self.flux

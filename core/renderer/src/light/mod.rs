@@ -25,7 +25,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use crate::color::Rgb;
-use crate::scene::Scene;
+use crate::scene::{Scene, World};
 use cluster::Cluster;
 use distant::SceneBall;
 use emitter::MeshEmitter;
@@ -168,6 +168,12 @@ impl Lights {
     /// Lamps without power or size are left out; negative channels count as zero.
     #[must_use]
     pub fn build(scene: &Scene, emission: &[Rgb]) -> Self {
+        Self::with_world(scene, emission, &scene.world)
+    }
+
+    /// As [`Lights::build`], in another world than the scene's own.
+    #[must_use]
+    pub fn with_world(scene: &Scene, emission: &[Rgb], world: &World) -> Self {
         let emission: Vec<Rgb> = emission.iter().map(|&radiance| positive(radiance)).collect();
         let mut lights: Vec<Light> = scene
             .lamps
@@ -184,7 +190,8 @@ impl Lights {
             }
         }
         let ball = SceneBall::new(scene.bounds);
-        let world = WorldLight::new(&scene.world);
+        let has_world = !positive(world.radiance).is_black();
+        let world = WorldLight::new(world);
         let mut fluxes: Vec<Rgb> = lights.iter().map(|light| light.flux(&ball)).collect();
         fluxes.push(world.flux(&ball));
         let means: Vec<f64> = fluxes.iter().map(|flux| f64::from(flux.mean())).collect();
@@ -205,7 +212,7 @@ impl Lights {
             lights,
             light_of_object,
             world,
-            has_world: !positive(scene.world.radiance).is_black(),
+            has_world,
             ball,
             by_flux: Cdf::with_even_share(&means),
             total_flux: fluxes.into_iter().sum(),
@@ -216,6 +223,20 @@ impl Lights {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.lights.is_empty() && !self.has_world
+    }
+
+    /// Memory (bytes) of the tables over the triangles of emissive meshes.
+    #[must_use]
+    pub fn emitter_bytes(&self) -> usize {
+        let bytes = |light: &Light| if let Shape::Mesh(mesh) = &light.shape { mesh.bytes() } else { 0 };
+        self.lights.iter().map(bytes).sum()
+    }
+
+    /// Memory (bytes) of all but [`Lights::emitter_bytes`].
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let tables = self.by_flux.as_ref().map_or(0, Cdf::bytes) + self.tree.bytes();
+        self.lights.len() * size_of::<Light>() + self.emitters.len() * size_of::<Emitter>() + tables
     }
 
     /// Flux emitted into the scene (W × squared length scale), the world included.

@@ -44,6 +44,11 @@ impl Cdf {
         Some(Self { sums })
     }
 
+    /// Memory (bytes).
+    pub(super) const fn bytes(&self) -> usize {
+        self.sums.len() * size_of::<f64>()
+    }
+
     /// As [`Cdf::new`], with a tenth spread evenly over the entries of positive weight.
     pub(super) fn with_even_share(weights: &[f64]) -> Option<Self> {
         let total: f64 = weights.iter().sum();

@@ -59,6 +59,11 @@ impl Tree {
         Self { nodes, order, place }
     }
 
+    /// Memory (bytes).
+    pub(super) fn bytes(&self) -> usize {
+        self.nodes.len() * size_of::<Node>() + (self.order.len() + self.place.len()) * size_of::<u32>()
+    }
+
     /// The emitter that `u` in 0..1 chooses; `weigh` says about what irradiance an emitter gives the receiver. `None` where
     /// none gives any.
     pub(super) fn choose(
@@ -159,7 +164,7 @@ impl Builder<'_> {
         }
         let axis = (high - low).max_position();
         let per_bucket = (high - low)[axis] / BUCKETS as f32;
-        if !(per_bucket > 0.0) {
+        if per_bucket.is_nan() || per_bucket <= 0.0 {
             return order.len() / 2;
         }
         let bucket = |index: u32| (((middle(index) - low)[axis] / per_bucket) as usize).min(BUCKETS - 1);

@@ -7,6 +7,7 @@
 mod deposit;
 
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -14,6 +15,7 @@ use rayon::prelude::*;
 use crate::accel::{Hit, Ray};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
+use crate::effects_plan::{Costs, Effect, Meter};
 use crate::error::RenderError;
 use crate::estimator::{Landing, PhotonSink};
 use crate::lit_scene::{LitScene, lobes_lit, ray_kind};
@@ -28,6 +30,9 @@ pub use deposit::PyramidDeposits;
 /// Photons of one task: long enough to hide scheduling, short enough to cancel at once.
 const BATCH: u64 = 4096;
 
+/// Photons of a task that are clocked, to tell what each effect costs.
+const CLOCKED: u64 = 64;
+
 /// Highest chance of surviving a landing: an albedo of one would never end.
 const MAX_SURVIVAL: f32 = 0.98;
 
@@ -41,6 +46,8 @@ pub struct PhotonPassCounts {
     pub emitted: u64,
     /// Segments traced.
     pub segments: u64,
+    /// What each effect cost.
+    pub costs: Costs,
 }
 
 /// Traces the photons with ids in `0..photon_count`, dealt in order into `sets` sets.
@@ -56,10 +63,11 @@ pub fn run<S: PhotonSink>(
     progress: &Progress,
 ) -> Result<PhotonPassCounts, RenderError> {
     let count = settings.photon_count;
-    if !lit.plan.indirect || count == 0 {
+    if !lit.plan.indirect() || lit.lights.is_empty() || count == 0 {
         return Ok(PhotonPassCounts::default());
     }
     let (segments, done) = (AtomicU64::new(0), AtomicU64::new(0));
+    let costs = Mutex::new(Costs::default());
     let set_of = |id: u64| (id * sets as u64 / count) as usize;
     #[expect(clippy::cast_precision_loss, reason = "a share of at most 10^9 photons")]
     let tracers: [Tracer<'_, S>; SETS] = std::array::from_fn(|set| {
@@ -70,9 +78,20 @@ pub fn run<S: PhotonSink>(
     (0..count.div_ceil(BATCH)).into_par_iter().try_for_each(|batch| {
         progress.check()?;
         let ids = batch * BATCH..((batch + 1) * BATCH).min(count);
+        let clocked_end = (ids.start + CLOCKED).min(ids.end);
         let mut landed = S::Batch::default();
-        let photon = |id| tracers[set_of(id)].photon(PhotonSampler::new(id, seed), &mut landed);
-        let traced: u64 = ids.clone().map(photon).sum();
+        let mut meter = Meter::default();
+        let mut traced = 0;
+        for (ids, clocked) in [(ids.start..clocked_end, true), (clocked_end..ids.end, false)] {
+            meter.begin(clocked);
+            meter.enter(lit.plan.indirect_owner());
+            for id in ids {
+                let sampler = PhotonSampler::new(id, seed);
+                traced += tracers[set_of(id)].photon(sampler, &mut landed, &mut meter);
+            }
+            meter.end();
+        }
+        *costs.lock().unwrap_or_else(PoisonError::into_inner) += meter.costs;
         sink.finish(batch, landed);
         segments.fetch_add(traced, Ordering::Relaxed);
         let done = done.fetch_add(ids.end - ids.start, Ordering::Relaxed);
@@ -80,7 +99,8 @@ pub fn run<S: PhotonSink>(
         progress.set_fraction(done as f64 / count as f64);
         Ok::<(), RenderError>(())
     })?;
-    Ok(PhotonPassCounts { emitted: count, segments: segments.into_inner() })
+    let costs = costs.into_inner().unwrap_or_else(PoisonError::into_inner);
+    Ok(PhotonPassCounts { emitted: count, segments: segments.into_inner(), costs })
 }
 
 struct Tracer<'a, S> {
@@ -94,7 +114,7 @@ struct Tracer<'a, S> {
 
 impl<S: PhotonSink> Tracer<'_, S> {
     /// Follows one photon from its lamp; gives the number of segments traced.
-    fn photon(&self, mut sampler: PhotonSampler, landed: &mut S::Batch) -> u64 {
+    fn photon(&self, mut sampler: PhotonSampler, landed: &mut S::Batch, meter: &mut Meter) -> u64 {
         let u = [sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw()];
         let Some(emission) = self.lit.lights.emit(u) else { return 0 };
         let flux = emission.flux * self.share;
@@ -110,10 +130,11 @@ impl<S: PhotonSink> Tracer<'_, S> {
         let mut segments = 0;
         for _ in 0..MAX_PASSED_THROUGH {
             segments += 1;
+            meter.count_own(1);
             let Some(hit) = self.lit.accel.intersect(&ray) else { break };
             travelled += hit.t;
             if travelled >= emission.lit_from {
-                segments += self.scatter(ray, hit, flux, lobes, &mut sampler, landed);
+                segments += self.scatter(Arrival { ray, hit, flux, lobes }, &mut sampler, landed, meter);
             }
             if emission.casts_shadow {
                 break;
@@ -127,24 +148,25 @@ impl<S: PhotonSink> Tracer<'_, S> {
     /// Deposits at a hit and follows what leaves it, until roulette ends it.
     fn scatter(
         &self,
-        mut ray: Ray,
-        mut hit: Hit,
-        mut flux: Rgb,
-        lit_lobes: LobeSet,
+        arrival: Arrival,
         sampler: &mut PhotonSampler,
         landed: &mut S::Batch,
+        meter: &mut Meter,
     ) -> u64 {
         let mut segments = 0;
-        let mut lobes = lit_lobes;
+        let Arrival { mut ray, mut hit, mut flux, mut lobes } = arrival;
         for _ in 0..self.max_depth {
             let surface = self.lit.surface(&ray, hit);
             let bsdf = &surface.bsdf;
-            if bsdf.has(lobes_read(lobes)) {
-                let glossy = bsdf.has(lobes_read(lobes).without(LobeSet::DIFFUSE));
+            if bsdf.has(lobes.and(LobeSet::READ)) {
+                let glossy = bsdf.has(lobes.and(LobeSet::ROUGH));
                 let at = if glossy { [sampler.draw(), sampler.draw()] } else { [0.0; 2] };
+                let glossy = glossy && self.lit.plan.direction_bins();
                 let flux = flux * bsdf.frame.irradiance_factor(-ray.direction);
                 let landing = Landing { surface: &surface, set: self.set, flux, glossy, at };
+                let owner = meter.enter_if(glossy.then_some(Effect::IndirectGlossy));
                 self.sink.land(landed, &landing);
+                meter.back(owner);
             }
             let u_lobe = sampler.draw();
             let u = [sampler.draw(), sampler.draw()];
@@ -162,7 +184,11 @@ impl<S: PhotonSink> Tracer<'_, S> {
                 lobes = LobeSet::ALL;
             }
             segments += 1;
-            match self.lit.accel.intersect(&ray) {
+            let owner = meter.enter_if(next.effect);
+            meter.count_own(1);
+            let next_hit = self.lit.accel.intersect(&ray);
+            meter.back(owner);
+            match next_hit {
                 Some(next_hit) => hit = next_hit,
                 None => break,
             }
@@ -187,6 +213,7 @@ impl<S: PhotonSink> Tracer<'_, S> {
                 weight,
                 kind: visibility::DIFFUSE,
                 straight: true,
+                effect: Some(Effect::AlphaTransparency),
                 eta_squared: 1.0,
             });
         }
@@ -198,9 +225,18 @@ impl<S: PhotonSink> Tracer<'_, S> {
             weight,
             kind: ray_kind(&sample),
             straight: false,
+            effect: LobeSet::FOLLOWED.intersects(sample.class).then_some(Effect::MirrorsAndGlass),
             eta_squared: sample.eta_squared,
         })
     }
+}
+
+/// A photon on its way from the light to a hit, and the lobes it lights there.
+struct Arrival {
+    ray: Ray,
+    hit: Hit,
+    flux: Rgb,
+    lobes: LobeSet,
 }
 
 struct Next {
@@ -208,12 +244,8 @@ struct Next {
     weight: Rgb,
     kind: u32,
     straight: bool,
+    /// What the way on is for, where it is not for indirect light in general.
+    effect: Option<Effect>,
     /// See [`crate::bsdf::BsdfSample`].
     eta_squared: f32,
-}
-
-/// Of the lobes that are lit, those whose light is read from the pyramid.
-fn lobes_read(lit: LobeSet) -> LobeSet {
-    let read = LobeSet::DIFFUSE | LobeSet::ROUGH;
-    lit.without(LobeSet::ALL.without(read))
 }

@@ -157,12 +157,18 @@ impl<'a> Accumulator<'a> {
     pub fn bytes(&self) -> usize {
         let sums =
             self.flux.iter().map(|level| level.len() * (size_of::<[[i64; 3]; SETS]>() + size_of::<u32>()));
+        sums.sum::<usize>() + self.bin_bytes()
+    }
+
+    /// Memory (bytes) of the direction bins alone.
+    #[must_use]
+    pub fn bin_bytes(&self) -> usize {
         let glossy = self.glossy.iter().map(|level| {
             let groups = |cell: &Mutex<GlossySums>| cell.lock().unwrap_or_else(PoisonError::into_inner).len();
             level.len() * size_of::<Mutex<GlossySums>>()
                 + level.iter().map(groups).sum::<usize>() * size_of::<[[i64; LANES]; 3]>()
         });
-        sums.chain(glossy).sum()
+        glossy.sum()
     }
 
     /// What was added, by level and place.

@@ -1,6 +1,7 @@
 //! From sums to a pyramid that can be read: levels merged octree-wise, sparse cells given their parent's value.
 
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -31,7 +32,10 @@ impl Pyramid {
         keep_going: impl Fn() -> bool,
     ) -> Option<Self> {
         let mut sums = accumulator.into_sums();
-        merge(layout, &mut sums);
+        merge(layout, &mut sums.cells);
+        let clock = Instant::now();
+        merge_bins(layout, &mut sums);
+        let mut bins_time = clock.elapsed();
         let mixed = mixed_cells(layout, &sums.cells, &visible);
         let enough = 4 * u64::from(photons_per_cell);
         let mut store = BinStore::new(sums.bins);
@@ -51,7 +55,9 @@ impl Pyramid {
             let read_above = |place: usize| {
                 parent(place).filter(|[parent, _]| reads_parent(parent, layout, number, place))
             };
+            let clock = Instant::now();
             let glossy = push_bins(layout, number, &sums, &mut store, |place| read_above(place).is_none());
+            bins_time += clock.elapsed();
             let settle = |place: usize| -> [Cell; SETS] {
                 let enough = sums.cells[number][place].count >= enough;
                 let parent = read_above(place);
@@ -69,7 +75,7 @@ impl Pyramid {
         }
         let grid = layout.grid.clone();
         let per_finest_area = grid.levels[grid.finest()].cell_size.powi(-2);
-        Some(Self { grid, classes: layout.classes, levels, store, per_finest_area })
+        Some(Self { grid, classes: layout.classes, levels, store, bins_time, per_finest_area })
     }
 }
 
@@ -115,16 +121,21 @@ fn push_bins(
 }
 
 /// Adds every cell to its parent, from the finest level up.
-fn merge(layout: &Layout, sums: &mut Sums) {
+fn merge(layout: &Layout, cells: &mut [Vec<CellSum>]) {
     for level in (1..layout.levels.len()).rev() {
-        let (coarser, finer) = sums.cells.split_at_mut(level);
+        let (coarser, finer) = cells.split_at_mut(level);
         for (place, sum) in finer[0].iter().enumerate().filter(|(_, sum)| sum.count > 0) {
             if let Some(parent) = layout.parent(level, place) {
                 coarser[level - 1][parent].add(sum);
             }
         }
-        let frame =
-            |level: usize, place: usize| Frame::new(layout.levels[level].surfaces[place].mean_normal());
+    }
+}
+
+/// Adds the bins of every glossy cell to its parent's, from the finest level up.
+fn merge_bins(layout: &Layout, sums: &mut Sums) {
+    let frame = |level: usize, place: usize| Frame::new(layout.levels[level].surfaces[place].mean_normal());
+    for level in (1..layout.levels.len()).rev() {
         let (coarser, finer) = sums.glossy.split_at_mut(level);
         for (&place, values) in &finer[0] {
             if let Some(parent) = layout.parent(level, place) {

@@ -56,24 +56,16 @@ impl NormalClasses {
     fn direction(self, normal: Vec3) -> usize {
         // Ties go to the earlier axis. Without branches: which way a hit faces is anyone's guess.
         let a = normal.abs();
-        let not_x = !((a.x >= a.y - SNAP) & (a.x >= a.z - SNAP));
-        let not_y = !(a.y >= a.z - SNAP);
-        let axis = usize::from(not_x) * (1 + usize::from(not_y));
+        let x = (a.x >= a.y - SNAP) & (a.x >= a.z - SNAP);
+        let y = a.y >= a.z - SNAP;
+        let axis = (1 - usize::from(x)) * (2 - usize::from(y));
         let negative = normal.is_negative_bitmask() >> axis & 1;
         let face = axis * 2 + negative as usize;
         match self {
             Self::Six => face,
             Self::FiftyFour => {
-                let part = |v: f32| {
-                    let ratio = v / a[axis];
-                    if ratio > 1.0 / 3.0 + SNAP {
-                        2
-                    } else if ratio < -1.0 / 3.0 - SNAP {
-                        0
-                    } else {
-                        1
-                    }
-                };
+                let middle = a[axis] * (1.0 / 3.0 + SNAP);
+                let part = |v: f32| 1 + usize::from(v > middle) - usize::from(v < -middle);
                 face * 9 + part(normal[(axis + 1) % 3]) * 3 + part(normal[(axis + 2) % 3])
             }
         }

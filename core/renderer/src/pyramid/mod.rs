@@ -27,6 +27,8 @@ mod lookup;
 mod measure;
 mod mixed;
 
+use std::time::Duration;
+
 use glam::{IVec3, Vec3};
 
 pub use accumulator::{Accumulator, Landing, Leaving, SETS};
@@ -99,6 +101,8 @@ pub struct Pyramid {
     classes: NormalClasses,
     levels: Vec<Level>,
     store: BinStore,
+    /// Wall time that merging and storing the bins took.
+    bins_time: Duration,
     /// One over the area of a finest cell's face (per square scene unit).
     per_finest_area: f32,
 }
@@ -124,6 +128,18 @@ impl Pyramid {
             .map(|level| level.index.bytes() + level.index.len() * size_of::<[Cell; SETS]>())
             .sum::<usize>()
             + self.store.bytes()
+    }
+
+    /// Memory (bytes) of the direction bins alone.
+    #[must_use]
+    pub const fn bin_bytes(&self) -> usize {
+        self.store.bytes()
+    }
+
+    /// Wall time that the direction bins took of the build.
+    #[must_use]
+    pub const fn bins_time(&self) -> Duration {
+        self.bins_time
     }
 
     /// Cells with direction bins, all levels.

@@ -79,6 +79,9 @@ impl Work<'_> {
         self.progress.check()?;
         let gathered = self.gather([&estimator; SETS], stats);
         stats.estimator.bytes = bytes(&estimator);
+        let indirect = &mut stats.effects[self.lit.plan.indirect_owner() as usize];
+        indirect.seconds += stats.estimator.seconds;
+        indirect.bytes += stats.estimator.bytes;
         gathered
     }
 
