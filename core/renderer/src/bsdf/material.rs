@@ -1,6 +1,7 @@
 //! Materials made ready for the render: closures checked, merged and classified once, so that a hit costs little.
 
 use std::ops::Index;
+use std::sync::Arc;
 
 use glam::Vec3;
 use smallvec::SmallVec;
@@ -10,9 +11,10 @@ use super::lobe::Lobe;
 use super::principled::{self, Principled};
 use super::reflection::{self, Roughness};
 use super::sanitize::Sanitizer;
-use super::{Bsdf, LobeSet, MAX_LOBES, ShadingFrame, energy_table, fresnel};
+use super::varying::Varying;
+use super::{Bsdf, LobeSet, MAX_LOBES, MaterialRef, ShadingFrame, energy_table, fresnel};
 use crate::color::Rgb;
-use crate::scene::record::ClosureRecord;
+use crate::scene::record::{ClosureRecord, WeightedClosure};
 use crate::scene::{Material, Problem};
 
 /// Least value of [`PreparedMaterial::specular_tint`], so that dividing by it is safe.
@@ -40,6 +42,13 @@ pub struct PreparedMaterial {
     constant_lambert: Option<Rgb>,
     mean_emission: Rgb,
     specular_tint: Rgb,
+    /// Share of light that passes straight through, the most that can occur.
+    most_transparency: Rgb,
+    is_opaque: bool,
+    /// Indices of refraction the energy tables will be asked for.
+    etas: Vec<f32>,
+    /// Of a material whose closures differ from point to point: what makes them. Its own are typical ones.
+    varying: Option<Box<Varying>>,
 }
 
 impl PreparedMaterial {
@@ -47,9 +56,24 @@ impl PreparedMaterial {
     #[must_use]
     pub fn new(material: &Material, problems: &mut Vec<Problem>) -> Self {
         let mut sanitizer = Sanitizer::default();
+        let mut prepared = Self::of_closures(&material.closures, &mut sanitizer);
+        prepared.finish();
+        sanitizer.report(&material.name, problems);
+        if let Some(program) = &material.program {
+            prepared.vary(Varying::new(&material.closures, program));
+        }
+        prepared
+    }
+
+    /// What a hit needs of closures that hold there alone.
+    pub(super) fn at_hit(closures: &[WeightedClosure]) -> Self {
+        Self::of_closures(closures, &mut Sanitizer::default())
+    }
+
+    fn of_closures(closures: &[WeightedClosure], sanitizer: &mut Sanitizer) -> Self {
         let mut prepared = Self::default();
         let mut lobes = 1;
-        for weighted in &material.closures {
+        for weighted in closures {
             let weight = sanitizer.weight(weighted.weight);
             let closure = sanitizer.closure(&weighted.closure);
             lobes += most_lobes(&closure);
@@ -59,9 +83,33 @@ impl PreparedMaterial {
                 prepared.add(weight, &closure);
             }
         }
-        prepared.finish(&mut sanitizer);
-        sanitizer.report(&material.name, problems);
+        prepared.lambert = sanitizer.at_most_one(prepared.lambert);
+        prepared.transparency = sanitizer.at_most_one(prepared.transparency);
+        let tints = prepared.closures.iter().map(|(weight, closure)| *weight * closure.rough_tint());
+        prepared.specular_tint = tints.sum::<Rgb>().map(|c| c.max(LEAST_TINT));
         prepared
+    }
+
+    /// Makes the material one of closures that differ from point to point, and whatever it says of itself hold for all.
+    fn vary(&mut self, varying: Varying) {
+        for extreme in varying.extremes() {
+            let mut extreme = Self::at_hit(&extreme);
+            extreme.finish();
+            self.classes = self.classes | extreme.classes;
+            self.most_transparency += extreme.transparency;
+            self.is_opaque &= extreme.is_opaque;
+            self.etas.extend(extreme.etas);
+        }
+        self.most_transparency = self.most_transparency.map(|c| c.min(1.0));
+        self.constant_lambert = None;
+        self.varying = Some(Box::new(varying));
+    }
+
+    /// What makes the closures, where they differ from point to point.
+    #[must_use]
+    #[inline]
+    pub fn varying(&self) -> Option<&Varying> {
+        self.varying.as_deref()
     }
 
     fn add(&mut self, weight: Rgb, closure: &ClosureRecord) {
@@ -110,18 +158,17 @@ impl PreparedMaterial {
     }
 
     /// Derives what is asked of the material as a whole.
-    fn finish(&mut self, sanitizer: &mut Sanitizer) {
-        self.lambert = sanitizer.at_most_one(self.lambert);
-        self.transparency = sanitizer.at_most_one(self.transparency);
+    fn finish(&mut self) {
         self.classes = if self.lambert.is_black() { LobeSet::EMPTY } else { LobeSet::DIFFUSE };
         for (_, closure) in &self.closures {
             self.classes = self.classes | closure.classes();
         }
+        self.most_transparency = self.transparency;
+        self.is_opaque = self.transparency.is_black() && !self.closures.iter().any(|(_, c)| c.transmits());
+        self.etas = self.closures.iter().flat_map(|(_, closure)| closure.etas()).collect();
         if self.closures.is_empty() && self.transparency.is_black() {
             self.constant_lambert = Some(self.lambert);
         }
-        let tint: Rgb = self.closures.iter().map(|(weight, closure)| *weight * closure.rough_tint()).sum();
-        self.specular_tint = tint.map(|c| c.max(LEAST_TINT));
         self.mean_emission = self.cosine_mean_emission();
     }
 
@@ -150,21 +197,16 @@ impl PreparedMaterial {
         self.mean_emission
     }
 
-    /// Share of light that passes straight through.
+    /// Share of light that passes straight through, the most that can occur.
     #[must_use]
     pub fn transparency(&self) -> Rgb {
-        self.transparency
+        self.most_transparency
     }
 
     /// True when no light passes through, straight or refracted.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
-        let passes = |closure: &PreparedClosure| match closure {
-            PreparedClosure::Glossy { .. } => false,
-            PreparedClosure::Glass(_) | PreparedClosure::Refraction { .. } => true,
-            PreparedClosure::Principled(principled) => principled.transmits(),
-        };
-        self.transparency.is_black() && !self.closures.iter().any(|(_, closure)| passes(closure))
+        self.is_opaque
     }
 
     /// The albedo, where the material scatters as one constant Lambert lobe and nothing passes through it. A black
@@ -179,8 +221,7 @@ impl PreparedMaterial {
         self.closures.is_empty()
     }
 
-    /// Color at normal incidence of the lobes of class [`LobeSet::ROUGH`], at least 0.02. Direction bins hold radiance
-    /// divided by it.
+    /// See [`Bsdf::specular_tint`].
     #[must_use]
     pub fn specular_tint(&self) -> Rgb {
         self.specular_tint
@@ -191,17 +232,31 @@ impl PreparedMaterial {
     #[must_use]
     #[inline]
     pub fn bsdf(&self, wo: Vec3, ng: Vec3, ns: Vec3) -> Bsdf<'_> {
+        MaterialRef::Shared(self).bsdf(wo, ng, ns)
+    }
+
+    /// The same for a material that was made for this hit.
+    #[must_use]
+    pub fn into_bsdf<'a>(self, wo: Vec3, ng: Vec3, ns: Vec3) -> Bsdf<'a> {
+        MaterialRef::Own(Arc::new(self)).bsdf(wo, ng, ns)
+    }
+}
+
+impl<'a> MaterialRef<'a> {
+    #[inline]
+    pub(super) fn bsdf(self, wo: Vec3, ng: Vec3, ns: Vec3) -> Bsdf<'a> {
+        let material: &PreparedMaterial = &self;
         let frame = ShadingFrame::new(wo, ng, ns);
         let cos = wo.dot(frame.ns).clamp(0.0, 1.0);
-        let (emission, transparency) = (self.bare_emission, self.transparency);
-        let mut bsdf = Bsdf { material: self, wo, lobes: SmallVec::new(), emission, transparency, frame };
-        if !self.lambert.is_black() {
-            bsdf.lobes.push(Lobe::lambert(self.lambert, 0));
+        let (mut emission, transparency) = (material.bare_emission, material.transparency);
+        let mut lobes = SmallVec::new();
+        if !material.lambert.is_black() {
+            lobes.push(Lobe::lambert(material.lambert, 0));
         }
-        for (slot, (weight, closure)) in (1..).step_by(principled::LOBES).zip(&self.closures) {
-            bsdf.emission += closure.push(&mut bsdf.lobes, *weight, frame.entering, cos, slot);
+        for (slot, (weight, closure)) in (1..).step_by(principled::LOBES).zip(&material.closures) {
+            emission += closure.push(&mut lobes, *weight, frame.entering, cos, slot);
         }
-        bsdf
+        Bsdf { material: self, wo, lobes, emission, transparency, frame }
     }
 }
 
@@ -231,6 +286,15 @@ impl PreparedClosure {
             Self::Glass(glass) => glass.classes(),
             Self::Refraction { rough, ior } => super::lobe::transmission_class(rough.alpha, *ior),
             Self::Principled(principled) => principled.classes(),
+        }
+    }
+
+    /// True when refracted light passes.
+    fn transmits(&self) -> bool {
+        match self {
+            Self::Glossy { .. } => false,
+            Self::Glass(_) | Self::Refraction { .. } => true,
+            Self::Principled(principled) => principled.transmits(),
         }
     }
 
@@ -280,9 +344,13 @@ impl MaterialTable {
     pub fn build(materials: &[Material]) -> Self {
         let mut problems = Vec::new();
         let materials: Vec<_> = materials.iter().map(|m| PreparedMaterial::new(m, &mut problems)).collect();
-        let closures = || materials.iter().flat_map(|m| &m.closures);
-        if closures().next().is_some() {
-            energy_table::prepare(&closures().flat_map(|(_, closure)| closure.etas()).collect::<Vec<_>>());
+        let needs_tables =
+            |m: &PreparedMaterial| !m.closures.is_empty() || m.varying().is_some_and(|v| !v.is_lambert());
+        if materials.iter().any(needs_tables) {
+            energy_table::prepare(&materials.iter().flat_map(|m| &m.etas).copied().collect::<Vec<_>>());
+        }
+        if materials.iter().filter_map(PreparedMaterial::varying).any(Varying::bends_differently) {
+            energy_table::prepare_all();
         }
         Self { materials, problems }
     }

@@ -16,13 +16,13 @@ use crate::scene::visibility;
 use crate::settings::GatherSampling;
 use crate::stats::RayCounts;
 
-use super::Gatherer;
 use super::camera::camera_ray;
 use super::deferred::{Deferred, Target, Traces};
 use super::direct::{ShadowRay, Shares, lambert_shadow_ray, shadow_ray, transmittance};
 use super::lambert::LambertLanes;
 use super::path::Sampled;
 use super::vertex::{GatherRay, Vertex, rotate};
+use super::{Gatherer, Width};
 
 /// Work on one block of pixels.
 pub(super) struct Block<'a, 'g, E: Estimator> {
@@ -134,12 +134,19 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let g = self.gatherer;
         let Some(hit) = hit.filter(|hit| !g.lit.accel.is_lamp(hit.object)) else { return false };
         let (ng, material) = g.lit.accel.triangle(hit.object, hit.primitive);
-        let Some(albedo_over_pi) = g.plain[material].filter(|_| g.sampling == GatherSampling::Cosine) else {
+        if g.sampling != GatherSampling::Cosine {
             return false;
+        }
+        let albedo = match g.plain[material] {
+            Some(albedo_over_pi) => albedo_over_pi * PI,
+            None => match g.lit.varying_albedo(material, ray, &hit, g.camera_width.at(hit.t)) {
+                Some(albedo) => albedo,
+                None => return false,
+            },
         };
         let frame = g.lit.frame(ray, &hit, ng);
         let p = ray.origin + ray.direction * hit.t;
-        self.lambert.put(lane, p, frame.ng, frame.ns, albedo_over_pi * PI);
+        self.lambert.put(lane, p, frame.ng, frame.ns, albedo);
         self.samples[lane].alpha = 1.0;
         true
     }
@@ -147,7 +154,8 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     fn follow_camera(&mut self, lane: usize, mut ray: Ray, hit: Option<Hit>) {
         let g = self.gatherer;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.sample) << 16 | 1));
-        let mut sampled = Sampled { pdf: None, shares: Shares::EVEN, kind: visibility::CAMERA };
+        let (kind, width) = (visibility::CAMERA, g.camera_width);
+        let mut sampled = Sampled { pdf: None, shares: Shares::EVEN, kind, width };
         let (mut first, mut throughput) = (Some(hit), Rgb::WHITE);
         let transparent_film = g.lit.accel.scene().world.film_transparent;
         for depth in 0..g.max_depth {
@@ -169,6 +177,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             let Some(sample) = sample else { return };
             throughput *= sample.weight;
             sampled.kind = ray_kind(&sample);
+            sampled.width.start = sampled.width.at(met.distance);
             ray = Ray::leaving(surface.p, surface.ng, sample.wi, sampled.kind | g.lit.accel.lamp_bit());
             self.traces.rays.camera += 1;
         }
@@ -334,7 +343,8 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let g = self.gatherer;
         let weight = gather_ray.weight;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(index) << 16 | 2));
-        let sampled = Sampled { pdf: gather_ray.pdf, shares: g.shares, kind: gather_ray.kind };
+        let width = Width::of_solid_angle(solid_angle);
+        let sampled = Sampled { pdf: gather_ray.pdf, shares: g.shares, kind: gather_ray.kind, width };
         let met = g.meet(self.packet.ray(lane), Some(hit), sampled, &mut rng);
         let sample = &mut self.samples[lane];
         sample.direct += weight * met.light * g.direct_share;

@@ -13,9 +13,9 @@ use crate::lit_scene::{Surface, ray_kind};
 use crate::sampling::Rng;
 use crate::scene::visibility;
 
-use super::Gatherer;
 use super::deferred::Target;
 use super::direct::{Shares, shadow_ray, transmittance};
+use super::{Gatherer, Width};
 use crate::stats::RayCounts;
 
 /// Transparent surfaces a ray passes before it ends.
@@ -33,6 +33,8 @@ pub(super) struct Sampled {
     pub(super) shares: Shares,
     /// Kind of the ray, a bit of [`visibility`].
     pub(super) kind: u32,
+    /// How wide the ray is.
+    pub(super) width: Width,
 }
 
 impl Sampled {
@@ -80,8 +82,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 met.light += met.through * self.escaped(from, ray.direction, sampled);
                 return met;
             };
-            let surface = lit.surface(&ray, hit);
             met.distance += hit.t;
+            let surface = lit.surface(&ray, hit, sampled.width.at(met.distance));
             if !surface.bsdf.emission.is_black() {
                 let pdf = lit.lights.emitter_pdf(
                     from,
@@ -167,7 +169,12 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 return radiance + target.read(self.estimator, readable.place, throughput);
             }
             let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
-            let met = self.meet(ray, Some(hit), Sampled { pdf, shares: Shares::EVEN, kind }, rng);
+            let met = self.meet(
+                ray,
+                Some(hit),
+                Sampled { pdf, shares: Shares::EVEN, kind, width: Width::NONE },
+                rng,
+            );
             radiance += throughput * met.light;
             throughput *= met.through;
             let Some(next) = met.surface else { break };

@@ -137,7 +137,7 @@ impl<S: PhotonSink> Tracer<'_, S> {
         let mut segments = 0;
         let mut lobes = lit_lobes;
         for _ in 0..self.max_depth {
-            let surface = self.lit.surface(&ray, hit);
+            let surface = self.lit.surface(&ray, hit, 0.0);
             let bsdf = &surface.bsdf;
             if bsdf.has(lobes_read(lobes)) {
                 let glossy = bsdf.has(lobes_read(lobes).without(LobeSet::DIFFUSE));
