@@ -36,14 +36,15 @@ pub struct PreparedMaterial {
     lambert: Rgb,
     /// Emission that is the same in every direction.
     bare_emission: Rgb,
-    transparency: Rgb,
+    /// Share of light that passes straight through.
+    straight: Rgb,
     closures: Vec<(Rgb, PreparedClosure)>,
     classes: LobeSet,
     constant_lambert: Option<Rgb>,
     mean_emission: Rgb,
     specular_tint: Rgb,
     /// Share of light that passes straight through, the most that can occur.
-    most_transparency: Rgb,
+    transparency: Rgb,
     is_opaque: bool,
     /// Indices of refraction the energy tables will be asked for.
     etas: Vec<f32>,
@@ -84,7 +85,7 @@ impl PreparedMaterial {
             }
         }
         prepared.lambert = sanitizer.at_most_one(prepared.lambert);
-        prepared.transparency = sanitizer.at_most_one(prepared.transparency);
+        prepared.straight = sanitizer.at_most_one(prepared.straight);
         let tints = prepared.closures.iter().map(|(weight, closure)| *weight * closure.rough_tint());
         prepared.specular_tint = tints.sum::<Rgb>().map(|c| c.max(LEAST_TINT));
         prepared
@@ -96,11 +97,11 @@ impl PreparedMaterial {
             let mut extreme = Self::at_hit(&extreme);
             extreme.finish();
             self.classes = self.classes | extreme.classes;
-            self.most_transparency += extreme.transparency;
+            self.transparency += extreme.straight;
             self.is_opaque &= extreme.is_opaque;
             self.etas.extend(extreme.etas);
         }
-        self.most_transparency = self.most_transparency.map(|c| c.min(1.0));
+        self.transparency = self.transparency.map(|c| c.min(1.0));
         self.constant_lambert = None;
         self.varying = Some(Box::new(varying));
     }
@@ -119,7 +120,7 @@ impl PreparedMaterial {
                 return;
             }
             ClosureRecord::Transparent { color } => {
-                self.transparency += weight * color;
+                self.straight += weight * color;
                 return;
             }
             ClosureRecord::Emission { radiance } => {
@@ -142,7 +143,7 @@ impl PreparedMaterial {
                 return;
             }
             ClosureRecord::Principled(ref record) => {
-                self.transparency += weight * (1.0 - record.alpha);
+                self.straight += weight * (1.0 - record.alpha);
                 let weight = weight * record.alpha;
                 let principled = Principled::new(record);
                 if let Some(albedo) = principled.lambert() {
@@ -163,10 +164,10 @@ impl PreparedMaterial {
         for (_, closure) in &self.closures {
             self.classes = self.classes | closure.classes();
         }
-        self.most_transparency = self.transparency;
-        self.is_opaque = self.transparency.is_black() && !self.closures.iter().any(|(_, c)| c.transmits());
+        self.transparency = self.straight;
+        self.is_opaque = self.straight.is_black() && !self.closures.iter().any(|(_, c)| c.transmits());
         self.etas = self.closures.iter().flat_map(|(_, closure)| closure.etas()).collect();
-        if self.closures.is_empty() && self.transparency.is_black() {
+        if self.closures.is_empty() && self.straight.is_black() {
             self.constant_lambert = Some(self.lambert);
         }
         self.mean_emission = self.cosine_mean_emission();
@@ -200,7 +201,7 @@ impl PreparedMaterial {
     /// Share of light that passes straight through, the most that can occur.
     #[must_use]
     pub fn transparency(&self) -> Rgb {
-        self.most_transparency
+        self.transparency
     }
 
     /// True when no light passes through, straight or refracted.
@@ -248,7 +249,7 @@ impl<'a> MaterialRef<'a> {
         let material: &PreparedMaterial = &self;
         let frame = ShadingFrame::new(wo, ng, ns);
         let cos = wo.dot(frame.ns).clamp(0.0, 1.0);
-        let (mut emission, transparency) = (material.bare_emission, material.transparency);
+        let (mut emission, transparency) = (material.bare_emission, material.straight);
         let mut lobes = SmallVec::new();
         if !material.lambert.is_black() {
             lobes.push(Lobe::lambert(material.lambert, 0));

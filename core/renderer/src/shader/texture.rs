@@ -151,10 +151,7 @@ impl Texture {
     fn level_for(&self, width: f32) -> usize {
         let [x, y] = self.levels[0].size;
         let texels = width * ((x * y) as f32).sqrt();
-        // Not a number, zero and less all ask for the finest.
-        if !(texels > 1.0) {
-            return 0;
-        }
+        // Not a number and less than 1 ask for the finest: the conversion makes 0 of both.
         (texels.log2() as usize).min(self.levels.len() - 1)
     }
 }
