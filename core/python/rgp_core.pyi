@@ -68,7 +68,7 @@ class SceneBuilder:
     ) -> int:
         """world_from_object (4, 4), as Blender's matrix_world; `materials` one per slot (empty: Blender's default grey)."""
 
-    def set_object_info(self, object: int, record: dict[str, Any]) -> None:
+    def set_object_info(self, index: int, record: dict[str, Any]) -> None:
         """What materials may ask about an object: `{"color": [r, g, b, a], "index", "random"}`."""
 
     def add_lamp(self, record: dict[str, Any]) -> int: ...

@@ -42,8 +42,8 @@ _NORMALS = ("Normal", "Coat Normal", "Clear Coat Normal")
 
 
 def closures(folder: Folder, entry: Input) -> tuple[list[WeightedClosure], list[dict[str, Any]]]:
-    """The closures a shader input stands for, each with its share; empty for black. Inputs that vary hold a typical value
-    and are listed as the core's OutputRecords."""
+    """The closures a shader input stands for, each with its share; empty for black. Inputs that vary hold a typical
+    value and are listed as the core's OutputRecords."""
     outputs: list[dict[str, Any]] = []
     records = []
     for index, (share, closure) in enumerate(_parts(folder, entry, 1.0)):
@@ -58,9 +58,7 @@ def closures(folder: Folder, entry: Input) -> tuple[list[WeightedClosure], list[
     return records, outputs
 
 
-def _parts(
-    folder: Folder, entry: Input, weight: float | Varying
-) -> list[tuple[Value | Varying, Closure]]:
+def _parts(folder: Folder, entry: Input, weight: float | Varying) -> list[tuple[Value | Varying, Closure]]:
     source = origin(entry)
     if isinstance(source, Input) or source.b_node.mute:
         return []
@@ -111,10 +109,10 @@ def _report_left_out(folder: Folder, source: Output) -> None:
             folder.report_node(source.b_node, f"{identifier} is not supported yet; left out")
     for identifier in _NORMALS:
         entry = source.find(identifier)
-        if entry is not None and isinstance(origin(entry), Output):
-            if not folder.take_normal(entry):
-                message = f"{identifier} is not supported yet; the surface's own is used instead"
-                folder.report_node(source.b_node, message)
+        if entry is None or isinstance(origin(entry), Input) or folder.take_normal(entry):
+            continue
+        message = f"{identifier} is not supported yet; the surface's own is used instead"
+        folder.report_node(source.b_node, message)
 
 
 def _diffuse(folder: Folder, source: Output) -> Closure:

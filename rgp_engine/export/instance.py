@@ -66,12 +66,14 @@ def _object_info(b_instance: Any) -> dict[str, Any]:
 
 
 def _add_mesh(context: ExportContext, b_object: Any, layers: frozenset[str]) -> int | None:
-    """Hands an object's mesh with some layers to the core, named as the artist sees it; None when it has no triangles."""
+    """Hands an object's mesh and some layers to the core, named as the artist sees it; None without triangles."""
     arrays = mesh_arrays(b_object.data, sorted(layers))
     if arrays is None:
         return None
     for name in sorted(layers - arrays.layers.keys()):
-        context.log.add(b_object.name, f"its material reads {_layer_text(name)}, which the mesh does not have; 0 is used")
+        context.log.add(
+            b_object.name, f"its material reads {_layer_text(name)}, which the mesh does not have; 0 is used"
+        )
     index: int = context.builder.add_mesh(
         b_object.name,
         arrays.positions,

@@ -21,10 +21,10 @@ _TYPES = {
 
 
 def corner_layer(b_mesh: Any, name: str, corners: npt.NDArray[np.int32]) -> Layer | None:
-    """The layer of that name (see `ExportContext.attribute_number`) at `corners` (T, 3); None where the mesh has none."""
+    """The layer of that name (see `ExportContext.attribute_number`) at `corners` (T, 3); None where there is none."""
     kind, _, which = name.partition(":")
     if kind == "generated":
-        return _generated(b_mesh)[_corner_vertices(b_mesh)[corners]]
+        return np.asarray(_generated(b_mesh)[_corner_vertices(b_mesh)[corners]])
     if kind == "uv":
         return _uvs(b_mesh, which, corners)
     if kind == "color":
@@ -41,7 +41,7 @@ def _uvs(b_mesh: Any, name: str, corners: npt.NDArray[np.int32]) -> Layer | None
         return None
     uvs = np.empty((len(b_mesh.loops), 2), np.float32)
     b_layer.uv.foreach_get("vector", uvs.reshape(-1))
-    return uvs[corners]
+    return np.asarray(uvs[corners])
 
 
 def _attribute(b_mesh: Any, name: str, corners: npt.NDArray[np.int32]) -> Layer | None:
@@ -52,18 +52,18 @@ def _attribute(b_mesh: Any, name: str, corners: npt.NDArray[np.int32]) -> Layer 
     values = np.empty((len(b_attribute.data), channels), np.float32)
     b_attribute.data.foreach_get(prop, values.reshape(-1))
     if b_attribute.domain == "CORNER":
-        return values[corners]
+        return np.asarray(values[corners])
     if b_attribute.domain == "POINT":
-        return values[_corner_vertices(b_mesh)[corners]]
+        return np.asarray(values[_corner_vertices(b_mesh)[corners]])
     if b_attribute.domain == "FACE":
         faces = np.empty(len(b_mesh.loop_triangles), np.int32)
         b_mesh.loop_triangle_polygons.foreach_get("value", faces)
-        return np.repeat(values[faces][:, None], 3, axis=1)
+        return np.asarray(np.repeat(values[faces][:, None], 3, axis=1))
     return None
 
 
 def _generated(b_mesh: Any) -> Layer:
-    """Position of every vertex within the mesh's texture space, before modifiers moved it: 0 to 1 in a box around it."""
+    """Positions in the mesh's texture space, before modifiers moved the vertices: 0 to 1 in a box around them."""
     positions = np.empty((len(b_mesh.vertices), 3), np.float32)
     b_mesh.vertices.foreach_get("undeformed_co", positions.reshape(-1))
     center = np.array(b_mesh.texspace_location, np.float32)

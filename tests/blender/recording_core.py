@@ -30,9 +30,13 @@ class SceneBuilder:
         self.textures.append({"name": name, "pixels": pixels, "encoding": encoding})
         return len(self.textures) - 1
 
-    def add_mesh(self, name: str, positions: Any, triangles: Any, normals: Any, layers: Any, slots: Any) -> int:
+    def add_mesh(
+        self, name: str, positions: Any, triangles: Any, normals: Any, layers: Any, slots: Any
+    ) -> int:
         names = ("name", "positions", "triangles", "corner_normals", "layers", "slots")
-        self.meshes.append(dict(zip(names, (name, positions, triangles, normals, layers, slots), strict=True)))
+        self.meshes.append(
+            dict(zip(names, (name, positions, triangles, normals, layers, slots), strict=True))
+        )
         return len(self.meshes) - 1
 
     def add_object(

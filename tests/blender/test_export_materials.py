@@ -261,7 +261,7 @@ def test_image_stands_beside_its_linear_mean(scene, closures, recorded, problems
     assert closure["color"] == pytest.approx([(1.0 + 0.2158605) / 2] * 3, abs=1e-5)
     assert not any("Image Texture" in text for text in problems())
     (texture,) = recorded.last.textures
-    assert texture["name"] == "Chess" and texture["encoding"] == "srgb"
+    assert (texture["name"], texture["encoding"]) == ("Chess", "srgb")
     assert texture["pixels"].dtype == np.uint8
     assert texture["pixels"][..., 0].tolist() == [[255, 128], [255, 128]]
     program = recorded.last.material_of("Material")["program"]

@@ -97,8 +97,8 @@ impl SceneBuilder {
         self.0.add_object(name, mesh, record::matrix(&matrix), materials, visibility).map_err(to_python)
     }
 
-    fn set_object_info(&mut self, object: usize, record: &Bound<'_, PyDict>) -> PyResult<()> {
-        self.0.set_object_info(object, parse(record, "object")?).map_err(to_python)
+    fn set_object_info(&mut self, index: usize, record: &Bound<'_, PyDict>) -> PyResult<()> {
+        self.0.set_object_info(index, parse(record, "object")?).map_err(to_python)
     }
 
     fn add_lamp(&mut self, record: &Bound<'_, PyDict>) -> PyResult<usize> {

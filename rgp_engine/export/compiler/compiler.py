@@ -1,14 +1,16 @@
 """Walks a material's nodes backwards from what is asked for, and writes down what has to be computed at every hit.
 
-Whatever is constant stays a constant: only nodes behind which something differs from point to point become instructions.
+Whatever is constant stays a constant: only nodes behind which something differs from point to point become
+instructions.
 """
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from .. import arithmetic
 from ..arithmetic import Color, clamp
-from ..fold import Folder, Value, Varying, as_color, converted, title
+from ..fold import Folder, Value, Varying, as_color, converted
 from ..nodes import Input, Output, origin
 from .registry import NODES, SOURCES
 
@@ -19,7 +21,8 @@ MOST_INSTRUCTIONS = 4096
 """Of the core: programs with more are refused."""
 
 
-class Register(NamedTuple):
+@dataclass(frozen=True)
+class Register:
     """A result of the program."""
 
     index: int
@@ -125,7 +128,9 @@ class Compiler(Folder):
         if found is not None:
             return found
         default = self._silent.typical(source)
-        self.report_node(source.b_node, "this use of it is not supported yet; a typical value is used instead")
+        self.report_node(
+            source.b_node, "this use of it is not supported yet; a typical value is used instead"
+        )
         return default
 
     def _converted(self, operand: Operand, from_type: str, to_type: str) -> Operand:
@@ -195,10 +200,6 @@ class Compiler(Folder):
     def transformed(self, vector: Register, rows: Iterable[Iterable[float]]) -> Register:
         """A matrix (3 x 4) times a point."""
         return self.emit("transform", vector=vector, rows=[[float(x) for x in row] for row in rows])
-
-    def name_of(self, b_node: Any) -> str:
-        """As in messages."""
-        return title(b_node)
 
 
 def _operand(value: Value | Varying) -> Operand:

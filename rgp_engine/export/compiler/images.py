@@ -40,8 +40,8 @@ def _encoding(c: "Compiler", b_image: Any) -> str:
 
 
 def image_pixels(b_image: Any) -> npt.NDArray[Any] | None:
-    """Texels (height, width, 4), rows from the bottom, the color multiplied by alpha where the image says so: bytes or float
-    as in the file. None when it is missing or too large."""
+    """Texels (height, width, 4), rows from the bottom, the color multiplied by alpha where the image says so: bytes or
+    float as in the file. None when it is missing or too large."""
     width, height = b_image.size
     channels = b_image.channels
     if not (width and height and channels) or width * height > MOST_PIXELS:

@@ -180,7 +180,9 @@ def _curves(count: int) -> "Callable[[Compiler, Output], Operand | None]":
         low, high = _domain(b_mapping)
         value = c.input(source, name)
         factor = "Factor" if source.b_node.type == "CURVE_FLOAT" else "Fac"
-        bent = c.emit("curves", color=value, table=_curve_table(b_mapping, count, low, high), low=low, high=high)
+        bent = c.emit(
+            "curves", color=value, table=_curve_table(b_mapping, count, low, high), low=low, high=high
+        )
         return c.mixed(c.input(source, factor), value, bent)
 
     return emit

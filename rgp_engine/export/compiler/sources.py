@@ -19,7 +19,9 @@ def _image(c: "Compiler", source: Output) -> "Operand | None":
     if texture is None or b_node.projection not in ("FLAT", "BOX"):
         return None
     if b_node.interpolation not in ("Closest", "Linear"):
-        c.report_node(b_node, f"{b_node.interpolation.lower()} interpolation is not supported yet; linear is used")
+        c.report_node(
+            b_node, f"{b_node.interpolation.lower()} interpolation is not supported yet; linear is used"
+        )
     fields = {
         "texture": texture,
         "extension": _EXTENSIONS[b_node.extension],
@@ -43,7 +45,9 @@ def _uv(c: "Compiler") -> "Register":
 def _texture_mapped(c: "Compiler", b_node: Any, vector: "Register") -> "Register":
     """The mapping that old files have in the texture node itself."""
     b_mapping = b_node.texture_mapping
-    location, rotation, scale = (tuple(v) for v in (b_mapping.translation, b_mapping.rotation, b_mapping.scale))
+    location, rotation, scale = (
+        tuple(v) for v in (b_mapping.translation, b_mapping.rotation, b_mapping.scale)
+    )
     if (location, rotation, scale) == ((0.0,) * 3, (0.0,) * 3, (1.0,) * 3):
         return vector
     parts = {"location": location, "rotation": rotation, "scale": scale}
@@ -247,9 +251,12 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
 """Instructions of the nodes that look at the hit."""
 
 SOURCES: "dict[str, Callable[[Compiler, Output], bool]]" = {
-    **{kind: _always for kind in ("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP", "TEX_CHECKER", "TEX_GRADIENT")},
-    "TEX_IMAGE": lambda c, source: texture_of(c, source.b_node) is not None
-    and source.b_node.projection in ("FLAT", "BOX"),
+    **dict.fromkeys(
+        ("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP", "TEX_CHECKER", "TEX_GRADIENT"), _always
+    ),
+    "TEX_IMAGE": lambda c, source: (
+        texture_of(c, source.b_node) is not None and source.b_node.projection in ("FLAT", "BOX")
+    ),
     "UVMAP": _known(_uv_map),
     "TEX_COORD": _known(_texture_coordinate),
     "NEW_GEOMETRY": _known(_geometry),
