@@ -3,7 +3,7 @@
 from typing import Any
 
 from .closures import WeightedClosure, closures
-from .compiler import MOST_INSTRUCTIONS, Compiler
+from .compiler import MOST_INSTRUCTIONS, Compiler, displace
 from .context import ExportContext
 from .nodes import Input, Output, node_tree, origin, output_node
 
@@ -27,7 +27,7 @@ def material_index(context: ExportContext, b_material: Any | None) -> int:
 
 
 def material_record(compiler: Compiler, b_material: Any) -> dict[str, Any]:
-    """The surface of a material; displacement and volume are reported."""
+    """The surface of a material; a volume is reported."""
     name = b_material.name
     b_tree = node_tree(b_material)
     if b_tree is None:
@@ -38,9 +38,13 @@ def material_record(compiler: Compiler, b_material: Any) -> dict[str, Any]:
     if b_output is None:
         compiler.report("it has no Material Output node; black is used")
         return {"name": name, "closures": []}
-    for socket in ("Volume", "Displacement"):
-        if isinstance(origin(Input(b_output.inputs[socket], ())), Output):
-            compiler.report(f"{socket} is not supported yet; left out")
+    if isinstance(origin(Input(b_output.inputs["Volume"], ())), Output):
+        compiler.report("Volume is not supported yet; left out")
+    displacement = Input(b_output.inputs["Displacement"], ())
+    if isinstance(origin(displacement), Output) and not displace(compiler, displacement):
+        compiler.report("this Displacement is not supported yet; left out")
+    elif compiler.normal is not None and getattr(b_material, "displacement_method", "BUMP") != "BUMP":
+        compiler.report("its Displacement is rendered as a bump")
     records, outputs = closures(compiler, Input(b_output.inputs["Surface"], ()))
     record: dict[str, Any] = {"name": name, "closures": records}
     if not outputs and compiler.normal is None:
@@ -49,7 +53,8 @@ def material_record(compiler: Compiler, b_material: Any) -> dict[str, Any]:
         compiler.report("its nodes are too many; what varies is replaced by a typical value")
         return record
     instructions = compiler.instructions
-    record["program"] = {"instructions": instructions, "outputs": outputs, "normal": compiler.normal}
+    normal = None if compiler.normal is None else compiler.normal.index
+    record["program"] = {"instructions": instructions, "outputs": outputs, "normal": normal}
     return record
 
 

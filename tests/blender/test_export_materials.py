@@ -315,6 +315,20 @@ def test_what_varies_reaches_the_share_of_a_closure(scene, closures, recorded):
     assert [(output["closure"], output["input"]) for output in outputs] == [(0, "weight"), (1, "weight")]
 
 
+def test_displacement_is_a_bump(scene, closures, recorded, problems):
+    b_material, b_tree, b_output = build.material()
+    b_material.displacement_method = "DISPLACEMENT"
+    b_displacement = b_tree.nodes.new("ShaderNodeDisplacement")
+    build.connect(b_tree, b_tree.nodes.new("ShaderNodeTexNoise"), b_displacement, "Height")
+    build.connect(b_tree, b_displacement, b_output, "Displacement")
+    build.connect(b_tree, diffuse(b_tree, 0.5), b_output, "Surface")
+    closures(b_material)
+    program = recorded.last.material_of("Material")["program"]
+    assert program["instructions"][program["normal"]]["op"] == "bump"
+    assert program["outputs"] == []
+    assert "Material: its Displacement is rendered as a bump" in problems()
+
+
 def test_a_constant_tree_has_no_program(scene, closures, recorded):
     b_material, b_tree, b_output = build.material()
     b_value = build.node(b_tree, "ShaderNodeMath")
@@ -383,13 +397,13 @@ def test_displacement_and_volume_are_reported(scene, closures, recorded, problem
     b_shader = b_tree.nodes.new("ShaderNodeBsdfDiffuse")
     build.connect(b_tree, b_tree.nodes.new("ShaderNodeBump"), b_shader, "Normal")
     build.connect(b_tree, b_shader, b_output, "Surface")
-    build.connect(b_tree, b_tree.nodes.new("ShaderNodeDisplacement"), b_output, "Displacement")
+    build.connect(b_tree, b_tree.nodes.new("ShaderNodeVectorDisplacement"), b_output, "Displacement")
     build.connect(b_tree, b_tree.nodes.new("ShaderNodeVolumeScatter"), b_output, "Volume")
     closures(b_material)
     found = [text for text in problems() if text.startswith("Material")]
     assert found == [
         "Material: Volume is not supported yet; left out",
-        "Material: Displacement is not supported yet; left out",
+        "Material: this Displacement is not supported yet; left out",
     ]
     program = recorded.last.material_of("Material")["program"]
     assert program["instructions"][program["normal"]]["op"] == "bump"

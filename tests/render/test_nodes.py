@@ -153,9 +153,14 @@ def test_what_is_known_at_a_hit(kind: str, output: str | int) -> None:
     assert difference(output_of(kind, output)) < SMOOTH
 
 
-@pytest.mark.parametrize("vector_type", ["POINT", "VECTOR", "NORMAL"])
-def test_mapping(vector_type: str) -> None:
+@pytest.mark.parametrize("vector_type", ["POINT", "TEXTURE", "VECTOR", "NORMAL"])
+@pytest.mark.parametrize("varies", [False, True])
+def test_mapping(vector_type: str, varies: bool) -> None:
     inputs = {"Vector": "TexCoord", "Rotation": (0.1, 0.2, 0.3), "Scale": (1.0, 2.0, 3.0)}
+    if varies:
+        if vector_type == "TEXTURE":
+            pytest.skip("not supported")
+        inputs["Rotation"] = IMAGE
     assert difference(output_of("Mapping", inputs=inputs, vector_type=vector_type)) < SMOOTH
 
 
@@ -230,6 +235,89 @@ def test_colors(kind: str, output: int, inputs: dict[Any, Any], properties: dict
 )
 def test_gradient(gradient_type: str) -> None:
     assert difference(output_of("TexGradient", gradient_type=gradient_type)) < SMOOTH
+
+
+@pytest.mark.parametrize("dimensions", ["1D", "2D", "3D", "4D"])
+@pytest.mark.parametrize("output", ["Fac", "Color"])
+def test_noise(dimensions: str, output: str) -> None:
+    inputs = {"W": 0.7, "Scale": 3.0, "Detail": 2.5, "Roughness": 0.6, "Lacunarity": 2.2, "Distortion": 0.4}
+    assert difference(output_of("TexNoise", output, inputs, noise_dimensions=dimensions)) < SMOOTH
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 2), reason="Musgrave was a node of its own")
+@pytest.mark.parametrize(
+    "kind", ["MULTIFRACTAL", "RIDGED_MULTIFRACTAL", "HYBRID_MULTIFRACTAL", "HETERO_TERRAIN"]
+)
+def test_musgrave(kind: str) -> None:
+    inputs = {"Scale": 3.0, "Detail": 2.5, "Offset": 0.7, "Gain": 0.9}
+    assert difference(output_of("TexNoise", "Fac", inputs, noise_type=kind)) < SMOOTH
+
+
+@pytest.mark.parametrize("dimensions", ["1D", "2D", "3D", "4D"])
+def test_white_noise(dimensions: str) -> None:
+    def make(b_tree: Any) -> Any:
+        b_whole = b_tree.nodes.new("ShaderNodeVectorMath")
+        b_whole.operation, b_whole.inputs[1].default_value = "SNAP", (0.5, 0.5, 0.5)
+        b_tree.links.new(b_tree.nodes.new("ShaderNodeUVMap").outputs[0], b_whole.inputs[0])
+        b_noise = b_tree.nodes.new("ShaderNodeTexWhiteNoise")
+        b_noise.noise_dimensions, b_noise.inputs["W"].default_value = dimensions, 0.3
+        b_tree.links.new(b_whole.outputs[0], b_noise.inputs["Vector"])
+        return b_noise.outputs["Color"]
+
+    assert difference(make) < EDGES
+
+
+@pytest.mark.parametrize("dimensions", ["2D", "3D"])
+@pytest.mark.parametrize("feature", ["F1", "F2", "SMOOTH_F1", "DISTANCE_TO_EDGE"])
+@pytest.mark.parametrize("metric", ["EUCLIDEAN", "MINKOWSKI"])
+def test_voronoi_distance(dimensions: str, feature: str, metric: str) -> None:
+    inputs = {"Scale": 3.0, "Smoothness": 0.6, "Exponent": 0.7, "Randomness": 0.8}
+    options = {"voronoi_dimensions": dimensions, "feature": feature, "distance": metric}
+    assert difference(output_of("TexVoronoi", "Distance", inputs, **options)) < SMOOTH
+
+
+@pytest.mark.parametrize("output", ["Color", "Position"])
+@pytest.mark.parametrize("feature", ["F1", "F2", "SMOOTH_F1"])
+def test_voronoi_cells(output: str, feature: str) -> None:
+    assert difference(output_of("TexVoronoi", output, {"Scale": 3.0}, feature=feature)) < EDGES
+
+
+@pytest.mark.parametrize(
+    ("kind", "direction", "profile"),
+    [
+        ("BANDS", "X", "SIN"),
+        ("BANDS", "DIAGONAL", "TRI"),
+        ("RINGS", "Z", "SIN"),
+        ("RINGS", "SPHERICAL", "TRI"),
+    ],
+)
+def test_wave(kind: str, direction: str, profile: str) -> None:
+    inputs = {"Scale": 1.5, "Distortion": 1.2, "Detail": 1.5, "Detail Scale": 1.1, "Phase Offset": 0.3}
+    options = {"wave_type": kind, f"{kind.lower()}_direction": direction, "wave_profile": profile}
+    assert difference(output_of("TexWave", "Color", inputs, **options)) < SMOOTH
+
+
+@pytest.mark.parametrize("depth", [0, 1, 2, 5, 10])
+def test_magic(depth: int) -> None:
+    inputs = {"Scale": 2.0, "Distortion": 1.2}
+    assert difference(output_of("TexMagic", "Color", inputs, turbulence_depth=depth)) < SMOOTH
+
+
+@pytest.mark.parametrize("output", ["Color", "Fac"])
+def test_brick(output: str) -> None:
+    inputs = {"Scale": 3.0, "Mortar Smooth": 0.4, "Bias": 0.1, "Mortar Size": 0.05}
+    options = {"offset": 0.3, "offset_frequency": 2, "squash": 0.6, "squash_frequency": 3}
+    assert difference(output_of("TexBrick", output, inputs, **options)) < EDGES
+
+
+def test_bump() -> None:
+    inputs = {"Strength": 0.7, "Distance": 0.4, "Height": "TexNoise"}
+    assert difference(output_of("Bump", inputs=inputs)) < SMOOTH
+
+
+@pytest.mark.parametrize("space", ["TANGENT", "OBJECT", "WORLD"])
+def test_normal_map(space: str) -> None:
+    assert difference(output_of("NormalMap", inputs={"Strength": 0.8, "Color": IMAGE}, space=space)) < SMOOTH
 
 
 def test_checker() -> None:

@@ -44,8 +44,9 @@ class Compiler(Folder):
         """True when the program asks about the object."""
         self.aside = "here"
         """Where on the surface things are asked for, while the slope of a bump is compiled."""
-        self.normal: int | None = None
+        self.normal: Register | None = None
         """The register that is the shading normal."""
+        self._chosen_normal: Register | None = None
         self._silent = Folder(subject)
         self._known: dict[tuple[Any, ...], Operand] = {}
         self._numbers: dict[str, Register] = {}
@@ -89,9 +90,9 @@ class Compiler(Folder):
     def take_normal(self, entry: Input) -> bool:
         """Makes what feeds an input the shading normal; False where that is not possible."""
         found = self.compile(entry)
-        if not isinstance(found, Register) or self.normal not in (None, found.index):
+        if not isinstance(found, Register) or self._chosen_normal not in (None, found):
             return False
-        self.normal = found.index
+        self._chosen_normal = self.normal = found
         return True
 
     # What the nodes are made of.

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from ..nodes import Output
+from .mapping import mapping
 
 if TYPE_CHECKING:
     from .compiler import Compiler, Operand, Register
@@ -53,22 +54,6 @@ def _blended(
     factor, a, b = operands
     result = c.emit("blend", mode=mode, factor=factor, a=a, b=b)
     return c.clamped(result) if is_clamped else result
-
-
-def _mapping(c: "Compiler", source: Output) -> "Operand | None":
-    kind = source.b_node.vector_type
-    vector, rotation, scale = (c.input(source, name) for name in ("Vector", "Rotation", "Scale"))
-    zero, one = c.register(0.0), c.register(1.0)
-    if kind == "POINT":
-        location = c.input(source, "Location")
-        return c.emit("mapping", vector=vector, location=location, rotation=rotation, scale=scale)
-    if kind == "VECTOR":
-        return c.emit("mapping", vector=vector, location=zero, rotation=rotation, scale=scale)
-    if kind == "NORMAL":
-        shrunk = c.vector_math("DIVIDE", vector, scale)
-        turned = c.emit("mapping", vector=shrunk, location=zero, rotation=rotation, scale=one)
-        return c.emit("normalize", vector=turned)
-    return None
 
 
 def _clamp(c: "Compiler", source: Output) -> "Operand | None":
@@ -211,7 +196,7 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
     "VECT_MATH": _vector_math,
     "MIX": _mix,
     "MIX_RGB": _mix_rgb,
-    "MAPPING": _mapping,
+    "MAPPING": mapping,
     "CLAMP": _clamp,
     "MAP_RANGE": _map_range,
     "INVERT": _invert,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 from ..coordinates import matrix_array
 from ..nodes import Output
 from .images import texture_of, unassociates
+from .mapping import own_mapping
 
 if TYPE_CHECKING:
     from .compiler import Compiler, Operand, Register
@@ -28,7 +29,7 @@ def _image(c: "Compiler", source: Output) -> "Operand | None":
         "interpolation": "closest" if b_node.interpolation == "Closest" else "linear",
         "unassociate": unassociates(b_node),
     }
-    vector = _texture_mapped(c, b_node, c.input(source, "Vector") if c.linked(source, "Vector") else _uv(c))
+    vector = own_mapping(c, b_node, c.input(source, "Vector") if c.linked(source, "Vector") else _uv(c))
     if b_node.projection == "BOX":
         normal = c.quantity("object_normal")
         blend = float(b_node.projection_blend)
@@ -40,18 +41,6 @@ def _image(c: "Compiler", source: Output) -> "Operand | None":
 
 def _uv(c: "Compiler") -> "Register":
     return c.attribute("uv")
-
-
-def _texture_mapped(c: "Compiler", b_node: Any, vector: "Register") -> "Register":
-    """The mapping that old files have in the texture node itself."""
-    b_mapping = b_node.texture_mapping
-    location, rotation, scale = (
-        tuple(v) for v in (b_mapping.translation, b_mapping.rotation, b_mapping.scale)
-    )
-    if (location, rotation, scale) == ((0.0,) * 3, (0.0,) * 3, (1.0,) * 3):
-        return vector
-    parts = {"location": location, "rotation": rotation, "scale": scale}
-    return c.emit("mapping", vector=vector, **{name: c.register(part) for name, part in parts.items()})
 
 
 def _uv_map(c: "Compiler", source: Output) -> "Operand | None":
@@ -190,37 +179,26 @@ def _normal_map(c: "Compiler", source: Output) -> "Operand | None":
     )
 
 
-def _bump(c: "Compiler", source: Output) -> "Operand | None":
+def heights(c: "Compiler", source: Output) -> "dict[str, Register]":
+    """The height of a node that tilts the normal: at the hit, and one step aside along two tangents."""
     here = c.aside
-    heights = {}
+    found = {}
     for name, aside in (("height", "here"), ("height_x", "x"), ("height_y", "y")):
         c.aside = aside
-        heights[name] = c.input(source, "Height")
+        found[name] = c.input(source, "Height")
     c.aside = here
+    return found
+
+
+def _bump(c: "Compiler", source: Output) -> "Operand | None":
     return c.emit(
         "bump",
         strength=c.input(source, "Strength"),
         distance=c.input(source, "Distance"),
         normal=_normal(c, source),
         invert=bool(source.b_node.invert),
-        **heights,
+        **heights(c, source),
     )
-
-
-def _pattern_vector(c: "Compiler", source: Output) -> "Register":
-    """Where a pattern is looked at; unlinked it follows the mesh's generated coordinates."""
-    vector = c.input(source, "Vector") if c.linked(source, "Vector") else c.attribute("generated")
-    return _texture_mapped(c, source.b_node, vector)
-
-
-def _checker(c: "Compiler", source: Output) -> "Operand | None":
-    inputs = {name: c.input(source, name.capitalize()) for name in ("color1", "color2", "scale")}
-    checker = c.emit("checker", vector=_pattern_vector(c, source), **inputs)
-    return checker if source.b_socket.identifier == "Color" else c.emit("alpha", of=checker)
-
-
-def _gradient(c: "Compiler", source: Output) -> "Operand | None":
-    return c.emit("gradient", vector=_pattern_vector(c, source), shape=source.b_node.gradient_type)
 
 
 def _always(_c: "Compiler", _source: Output) -> bool:
@@ -245,15 +223,11 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
     "LAYER_WEIGHT": _layer_weight,
     "NORMAL_MAP": _normal_map,
     "BUMP": _bump,
-    "TEX_CHECKER": _checker,
-    "TEX_GRADIENT": _gradient,
 }
 """Instructions of the nodes that look at the hit."""
 
 SOURCES: "dict[str, Callable[[Compiler, Output], bool]]" = {
-    **dict.fromkeys(
-        ("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP", "TEX_CHECKER", "TEX_GRADIENT"), _always
-    ),
+    **dict.fromkeys(("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP"), _always),
     "TEX_IMAGE": lambda c, source: (
         texture_of(c, source.b_node) is not None and source.b_node.projection in ("FLAT", "BOX")
     ),

@@ -1,8 +1,10 @@
 //! The instructions of a program and the check that makes them safe to run.
 
 use serde::Deserialize;
+use smallvec::{SmallVec, smallvec};
 
 use super::arithmetic::{BlendMode, MathFunction, VectorFunction};
+use super::pattern::{GradientShape, Pattern};
 use super::texture::{Extension, Interpolation};
 
 /// Number of an instruction, whose result it names.
@@ -172,55 +174,56 @@ pub enum Instruction {
     /// Two colors in turn; the result's alpha is the factor.
     Checker { vector: Register, color1: Register, color2: Register, scale: Register },
     /// A gradient over the vector's x, or around or from the origin.
-    Gradient { vector: Register, shape: super::pattern::GradientShape },
+    Gradient { vector: Register, shape: GradientShape },
+    /// Any other pattern.
+    Pattern { pattern: Pattern, inputs: Vec<Register> },
 }
 
 impl Instruction {
     /// The registers it reads.
-    pub(super) fn operands(&self) -> impl Iterator<Item = Register> {
-        const NONE: Register = Register::MAX;
-        let list: [Register; 6] = match *self {
-            Self::Constant { .. } | Self::Attribute { .. } | Self::Geometry { .. } => [NONE; 6],
+    pub(super) fn operands(&self) -> SmallVec<[Register; 8]> {
+        match *self {
+            Self::Constant { .. } | Self::Attribute { .. } | Self::Geometry { .. } => smallvec![],
             Self::Transform { vector, .. }
             | Self::Normalize { vector }
             | Self::Image { vector, .. }
-            | Self::Gradient { vector, .. } => [vector, NONE, NONE, NONE, NONE, NONE],
+            | Self::Gradient { vector, .. } => smallvec![vector],
             Self::Mapping { vector, location, rotation, scale } => {
-                [vector, location, rotation, scale, NONE, NONE]
+                smallvec![vector, location, rotation, scale]
             }
-            Self::BoxImage { vector, normal, .. } => [vector, normal, NONE, NONE, NONE, NONE],
+            Self::BoxImage { vector, normal, .. } => smallvec![vector, normal],
             Self::Alpha { of } | Self::Channel { of, .. } | Self::Luminance { of } | Self::Mean { of } => {
-                [of, NONE, NONE, NONE, NONE, NONE]
+                smallvec![of]
             }
-            Self::Combine { x, y, z } => [x, y, z, NONE, NONE, NONE],
-            Self::Math { a, b, c, .. } | Self::VectorMath { a, b, c, .. } => [a, b, c, NONE, NONE, NONE],
-            Self::Mix { factor, a, b } | Self::Blend { factor, a, b, .. } => [factor, a, b, NONE, NONE, NONE],
-            Self::Clamp { value, low, high } => [value, low, high, NONE, NONE, NONE],
-            Self::Gamma { color, gamma } => [color, gamma, NONE, NONE, NONE, NONE],
-            Self::BrightContrast { color, bright, contrast } => [color, bright, contrast, NONE, NONE, NONE],
+            Self::Combine { x, y, z } => smallvec![x, y, z],
+            Self::Math { a, b, c, .. } | Self::VectorMath { a, b, c, .. } => smallvec![a, b, c],
+            Self::Mix { factor, a, b } | Self::Blend { factor, a, b, .. } => smallvec![factor, a, b],
+            Self::Clamp { value, low, high } => smallvec![value, low, high],
+            Self::Gamma { color, gamma } => smallvec![color, gamma],
+            Self::BrightContrast { color, bright, contrast } => smallvec![color, bright, contrast],
             Self::HueSaturation { color, hue, saturation, value } => {
-                [color, hue, saturation, value, NONE, NONE]
+                smallvec![color, hue, saturation, value]
             }
             Self::RgbFromHsv { color }
             | Self::HsvFromRgb { color }
             | Self::RgbFromHsl { color }
             | Self::HslFromRgb { color }
-            | Self::Curves { color, .. } => [color, NONE, NONE, NONE, NONE, NONE],
-            Self::Ramp { factor, .. } => [factor, NONE, NONE, NONE, NONE, NONE],
-            Self::Fresnel { ior, normal } => [ior, normal, NONE, NONE, NONE, NONE],
-            Self::LayerWeight { blend, normal, .. } => [blend, normal, NONE, NONE, NONE, NONE],
-            Self::NormalMap { color, strength, .. } => [color, strength, NONE, NONE, NONE, NONE],
+            | Self::Curves { color, .. } => smallvec![color],
+            Self::Ramp { factor, .. } => smallvec![factor],
+            Self::Fresnel { ior, normal } => smallvec![ior, normal],
+            Self::LayerWeight { blend, normal, .. } => smallvec![blend, normal],
+            Self::NormalMap { color, strength, .. } => smallvec![color, strength],
             Self::Bump { strength, distance, height, height_x, height_y, normal, .. } => {
-                [strength, distance, height, height_x, height_y, normal]
+                smallvec![strength, distance, height, height_x, height_y, normal]
             }
-            Self::Checker { vector, color1, color2, scale } => [vector, color1, color2, scale, NONE, NONE],
-        };
-        list.into_iter().filter(|&register| register != NONE)
+            Self::Checker { vector, color1, color2, scale } => smallvec![vector, color1, color2, scale],
+            Self::Pattern { ref inputs, .. } => inputs.iter().copied().collect(),
+        }
     }
 
     /// What is wrong with instruction number `index` of a program; `textures` is how many there are.
     pub(super) fn fault(&self, index: usize, textures: usize) -> Option<String> {
-        if let Some(register) = self.operands().find(|&register| register as usize >= index) {
+        if let Some(register) = self.operands().into_iter().find(|&register| register as usize >= index) {
             return Some(format!("instruction {index} reads register {register}, which is not known yet"));
         }
         match *self {
@@ -233,6 +236,10 @@ impl Instruction {
             Self::Ramp { ref table, .. } | Self::Curves { ref table, .. } if table.len() < 2 => {
                 Some(format!("instruction {index} has a table of {} rows; it needs two", table.len()))
             }
+            Self::Pattern { ref pattern, ref inputs } if inputs.len() != pattern.input_count() => Some(
+                format!("instruction {index} has {} inputs, not {}", inputs.len(), pattern.input_count()),
+            ),
+            Self::Pattern { ref pattern, .. } => pattern.fault(),
             _ => None,
         }
     }

@@ -9,18 +9,22 @@
 
 mod arithmetic;
 mod instruction;
+mod noise;
 mod pattern;
 mod run;
 mod surface;
 mod texture;
+mod voronoi;
 
 use glam::Vec4;
 use smallvec::SmallVec;
 
 pub use arithmetic::{BlendMode, MathFunction, VectorFunction};
 pub use instruction::{Aside, Instruction, MOST_INSTRUCTIONS, NormalSpace, Quantity, Register};
-pub use pattern::GradientShape;
+pub use noise::Fractal;
+pub use pattern::{GradientShape, Pattern, VoronoiOutput, WaveDirection, WaveProfile};
 pub use texture::{Encoding, Extension, Interpolation, Pixels, Texture};
+pub use voronoi::{Feature, Metric};
 
 use crate::color::Rgb;
 

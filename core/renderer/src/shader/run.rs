@@ -1,6 +1,7 @@
 //! Running a program at a point.
 
 use glam::{Vec3, Vec4, Vec4Swizzles};
+use smallvec::SmallVec;
 
 use super::arithmetic::{self, BlendMode, MathFunction, VectorFunction};
 use super::instruction::{Instruction, Register};
@@ -143,6 +144,10 @@ fn colors(instruction: &Instruction, r: &Operands<'_>) -> Value {
         }
         Instruction::Gradient { vector, shape } => {
             return Value::number(pattern::gradient(shape, r.vector(vector)));
+        }
+        Instruction::Pattern { ref pattern, ref inputs } => {
+            let inputs: SmallVec<[Vec4; 10]> = inputs.iter().map(|&register| r.value(register).v).collect();
+            return Value { v: pattern.color(&inputs), width: 0.0 };
         }
         Instruction::Gamma { color, gamma } => {
             let power = r.number(gamma);
