@@ -175,16 +175,16 @@ impl Point for HitPoint<'_> {
         self.scene_steps().map(|step| step * self.metres())
     }
 
-    fn tangents(&self, attribute: u32) -> Option<[Vec3; 2]> {
+    fn tangents(&self, attribute: u32) -> Option<[Vec3; 3]> {
         let [a, b, c] = self.layer(attribute)?.corners(self.primitive).map(Vec4::from_array);
         let (uv_b, uv_c) = ((b - a).truncate(), (c - a).truncate());
-        let [along_b, along_c] = self.edges();
-        let determinant = uv_b.x * uv_c.y - uv_b.y * uv_c.x;
-        let along_u = (along_b * uv_c.y - along_c * uv_b.y) * determinant.signum();
-        let ns = if self.back { -self.ns } else { self.ns };
+        let to_object = self.object.object_from_scene.matrix3;
+        let [along_b, along_c] = self.edges().map(|edge| (to_object * edge.as_dvec3()).as_vec3());
+        let side = (uv_b.x * uv_c.y - uv_b.y * uv_c.x).signum();
+        let along_u = (along_b * uv_c.y - along_c * uv_b.y) * side;
+        let ns = self.object_normal(self.ns);
         let tangent = (along_u - ns * along_u.dot(ns)).try_normalize()?;
-        // As modelled: the back of a surface shows the same bump from behind.
-        Some([tangent, self.ns.cross(tangent) * determinant.signum()])
+        Some([tangent, ns.cross(tangent) * side, ns])
     }
 
     fn world_normal(&self, normal: Vec3) -> Vec3 {

@@ -71,8 +71,9 @@ pub trait Point {
     /// The vectors of one step aside (m), see [`Aside`].
     fn steps(&self) -> [glam::Vec3; 2];
 
-    /// Tangent and bitangent of a UV map in world space: unit vectors along u and v; `None` where it has no direction.
-    fn tangents(&self, attribute: u32) -> Option<[glam::Vec3; 2]>;
+    /// Unit vectors along u and v of a UV map, and the shading normal as modelled, in the object's space; `None` where the map
+    /// has no direction.
+    fn tangents(&self, attribute: u32) -> Option<[glam::Vec3; 3]>;
 
     /// A normal of the object's space in world space, of length 1 and on the viewer's side.
     fn world_normal(&self, normal: glam::Vec3) -> glam::Vec3;

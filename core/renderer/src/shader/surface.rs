@@ -44,9 +44,10 @@ pub(super) fn normal_map(
     let strength = strength.max(0.0);
     let mapped = match space {
         NormalSpace::Tangent => {
-            let Some([tangent, bitangent]) = point.tangents(attribute) else { return ns };
+            let Some([tangent, bitangent, normal]) = point.tangents(attribute) else { return ns };
             n = Vec3::new(n.x * strength, n.y * strength, 1.0 + (n.z - 1.0) * strength.min(1.0));
-            return (tangent * n.x + bitangent * n.y + ns * n.z).try_normalize().unwrap_or(ns);
+            let mapped = point.world_normal(tangent * n.x + bitangent * n.y + normal * n.z);
+            return mapped.try_normalize().unwrap_or(ns);
         }
         NormalSpace::Object => point.world_normal(n),
         NormalSpace::World => {

@@ -93,7 +93,7 @@ impl Voronoi {
     fn nearest(&self, cell: IVec3, local: Vec3) -> [Found; 2] {
         let none = Found { distance: f32::MAX, color: Vec3::ZERO, position: Vec3::ZERO };
         let mut best = [(none, IVec3::ZERO); 2];
-        for offset in self.around(if self.feature == Feature::F2 { 2 } else { 1 }) {
+        for offset in self.around(1) {
             let position = self.point(cell, offset);
             let distance = self.distance(position, local);
             let found = (Found { distance, color: Vec3::ZERO, position }, offset);
