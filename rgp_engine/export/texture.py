@@ -34,9 +34,9 @@ def texture_average(b_node: Any, b_output: Any, fold: Callable[[str], Value]) ->
     if kind in ("TEX_IMAGE", "TEX_ENVIRONMENT"):
         return _image(b_node, b_output)
     if kind in _PATTERNS:
-        return _shaped(0.5, b_output), "procedural textures are not supported yet"
+        return _shaped(0.5, b_output), "only a typical value is used here"
     if kind in _MIXES:
-        return _mix(b_node, b_output, fold), "procedural textures are not supported yet"
+        return _mix(b_node, b_output, fold), "only a typical value is used here"
     if kind == "LIGHT_PATH":
         return _LIGHT_PATH.get(b_output.identifier, 0.0), "ray kinds are not told apart here"
     if kind in ("FRESNEL", "LAYER_WEIGHT"):
