@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from .. import arithmetic
 from ..arithmetic import Color, clamp
-from ..fold import Folder, Value, Varying, as_color, converted
+from ..fold import Folder, Value, Varying, as_color, as_number, converted
 from ..nodes import Input, Output, origin
 from .registry import NODES, SOURCES
 
@@ -66,7 +66,7 @@ class Compiler(Folder):
         found = self.compile(entry)
         if isinstance(found, Register):
             return Varying(found.index, self._silent.constant_value(entry))
-        return self.constant_value(entry)
+        return as_number(found, entry.b_socket.type)
 
     def product(self, a: Value | Varying, b: Value | Varying) -> Value | Varying:
         """Channel by channel."""
