@@ -44,12 +44,12 @@ class RGPPyramidSettings(bpy.types.PropertyGroup):
             ("6", "6", "The six sides of a cube", 0),
             ("54", "54", "Nine for each side of a cube: less mixing on curved surfaces", 1),
         ),
-        default="6",
+        default="54",
     )
     photons_per_cell: bpy.props.IntProperty(
         name="Photons per Cell",
         description="A cell is read from its parent where the parent holds fewer than four times as many photons",
-        default=16,
+        default=4,
         min=1,
         max=1000,
     )

@@ -45,6 +45,8 @@ class Lamp:
     settings: dict[str, Any] = field(default_factory=dict)
     where: tuple[common.Point, common.Point] = ABOVE
     """Its place, and where it shines. In the picture the camera sees its own shape, and there is a dim world."""
+    scale: common.Point = (1.0, 1.0, 1.0)
+    """Of the object: it stretches a spot's cone."""
 
 
 HALF_SPREAD = math.radians(90.0)
@@ -64,6 +66,24 @@ LAMPS = {
         "SPOT",
         300.0,
         {"shadow_soft_size": 0.25, "use_soft_falloff": False, "spot_size": 0.9, "spot_blend": 0.6},
+    ),
+    "spot_long": Lamp(
+        "SPOT", 300.0, {"shadow_soft_size": 0.0, "spot_size": 0.9, "spot_blend": 0.0}, scale=(1.0, 2.0, 1.0)
+    ),
+    "spot_wide_blend": Lamp(
+        "SPOT", 300.0, {"shadow_soft_size": 0.0, "spot_size": 0.9, "spot_blend": 0.6}, scale=(2.0, 1.0, 1.0)
+    ),
+    "spot_deep_soft": Lamp(
+        "SPOT",
+        300.0,
+        {"shadow_soft_size": 0.25, "use_soft_falloff": True, "spot_size": 1.4, "spot_blend": 0.6},
+        scale=(1.0, 1.0, 2.0),
+    ),
+    "spot_small_sphere": Lamp(
+        "SPOT",
+        300.0,
+        {"shadow_soft_size": 0.25, "use_soft_falloff": False, "spot_size": 1.4, "spot_blend": 0.6},
+        scale=(0.5, 0.5, 1.0),
     ),
     "sun": Lamp("SUN", 2.0, {"angle": 0.0}),
     "sun_angle": Lamp("SUN", 2.0, {"angle": math.radians(12.0)}),
@@ -219,6 +239,7 @@ def _add_lamp(lamp: Lamp) -> None:
         setattr(light, setting, value)
     thing = common.add_object("Lamp", light)
     _aim(thing, *lamp.where)
+    thing.scale = lamp.scale
     if lamp.where != ABOVE:
         thing.visible_camera = True
         _add_world(0.2)

@@ -60,8 +60,15 @@ impl Room {
             let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
             SurfaceTriangle { corners: [a, b, c], normal, glossy: false }
         };
-        Layout::new(grid, NormalClasses::Six, self.triangles.len(), triangle, |_| true, || true)
-            .expect("nobody cancels")
+        Layout::new(
+            grid,
+            NormalClasses::Six,
+            self.triangles.len(),
+            triangle,
+            |points| vec![true; points.len()],
+            || true,
+        )
+        .expect("nobody cancels")
     }
 
     /// Points on the walls and the floor, half of them on each, in no order.

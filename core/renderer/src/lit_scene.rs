@@ -8,7 +8,7 @@ use crate::accel::{Accel, Hit, Ray};
 use crate::bsdf::{Bsdf, BsdfSample, LobeSet, PreparedMaterial, ShadingFrame, Varying};
 use crate::color::Rgb;
 use crate::effects_plan::EffectsPlan;
-use crate::light::Lights;
+use crate::light::{Lights, Receiver};
 use crate::scene::visibility;
 use hit_point::HitPoint;
 
@@ -35,6 +35,14 @@ pub struct Surface<'a> {
     pub bsdf: Bsdf<'a>,
     /// Which triangle.
     pub hit: Hit,
+}
+
+impl Surface<'_> {
+    /// What lights it.
+    #[must_use]
+    pub fn receiver(&self) -> Receiver {
+        Receiver { p: self.p, normal: self.bsdf.lit_side() }
+    }
 }
 
 impl<'a> LitScene<'a> {

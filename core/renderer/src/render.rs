@@ -1,13 +1,14 @@
 //! The order of everything.
 
 mod baselines;
+mod openness;
 
 use std::path::Path;
 use std::time::Instant;
 
 use glam::{DVec3, Vec3};
 
-use crate::accel::{Accel, Ray};
+use crate::accel::Accel;
 use crate::baseline;
 use crate::bsdf::{LobeSet, MaterialTable, PreparedMaterial};
 use crate::effects_plan::EffectsPlan;
@@ -17,13 +18,12 @@ use crate::film::Film;
 use crate::gather::{self, Gatherer, PyramidLookup, Stop, TraceFloor};
 use crate::light::Lights;
 use crate::lit_scene::LitScene;
-use crate::math::{Frame, Side};
 use crate::photon_pass::{self, PyramidDeposits};
 use crate::progress::{Progress, Stage};
 use crate::pyramid::{
     Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, SETS, SidePoint, SurfaceTriangle,
 };
-use crate::scene::{Scene, visibility};
+use crate::scene::Scene;
 use crate::settings::{EstimatorKind, RenderSettings, parse_bins};
 use crate::shader::Texture;
 use crate::stats::{EstimatorStats, Stats, TextureCounts};
@@ -226,33 +226,8 @@ fn layout(lit: &LitScene<'_>, settings: &RenderSettings, progress: &Progress) ->
         }
     };
     let keep_going = || !progress.is_cancelled();
-    let open = |point: &SidePoint| is_open(lit, point);
+    let open = |points: &[SidePoint]| openness::open(lit, points);
     Layout::new(grid, classes, triangles.len(), triangle, open, keep_going).ok_or(RenderError::Cancelled)
-}
-
-/// How far inside a solid a surface is known to be hidden (cells).
-const DEEPEST: f32 = 16.0;
-
-/// Whether light can come to a point on the side of a surface: whether a ray straight up, or one of four leaning ones, meets
-/// nothing opaque within a cell, and does not meet a surface from inside soon after. From a front one sees fronts, and from
-/// a back backs, unless the point lies inside another solid.
-fn is_open(lit: &LitScene<'_>, point: &SidePoint) -> bool {
-    /// Sine and cosine of 60°.
-    const LEANING: [f32; 2] = [0.866, 0.5];
-    let frame = Frame::new(point.side.normal);
-    let ends = |direction: Vec3| {
-        let direction = frame.from_local(direction);
-        let ray = Ray::leaving(point.p, point.side.normal, direction, visibility::DIFFUSE);
-        lit.accel.intersect(&ray).is_some_and(|hit| {
-            let (ng, material) = lit.accel.triangle(hit.object, hit.primitive);
-            let from_inside = Side::met(ng, direction).back != point.side.back;
-            let reach = if from_inside { DEEPEST * point.cell_size } else { point.cell_size };
-            hit.t < reach && lit.materials[material].is_opaque()
-        })
-    };
-    let [aside, up] = LEANING;
-    let leaning = [(aside, 0.0), (0.0, aside), (-aside, 0.0), (0.0, -aside)];
-    !(ends(Vec3::Z) && leaning.into_iter().all(|(x, y)| ends(Vec3::new(x, y, up))))
 }
 
 /// Points beyond this share on either side do not decide how fine the cells are.

@@ -141,7 +141,7 @@ impl Default for PhotonPassSettings {
 
 impl Default for PyramidSettings {
     fn default() -> Self {
-        Self { finest_resolution: 128, bins: "8x16".into(), normal_classes: "6".into(), photons_per_cell: 16 }
+        Self { finest_resolution: 128, bins: "8x16".into(), normal_classes: "54".into(), photons_per_cell: 4 }
     }
 }
 

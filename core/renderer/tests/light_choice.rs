@@ -35,8 +35,8 @@ fn a_scene_without_light_is_empty() {
     }
     let blue = dark(vec![], vec![triangle(0), triangle(1)], &emission);
     assert!(!blue.is_empty());
-    assert_eq!(blue.emitter_pdf(Vec3::Z, 0, 0, Vec3::NEG_Z, 1.0, Vec3::Z), 0.0);
-    assert!(blue.emitter_pdf(Vec3::Z, 1, 0, Vec3::NEG_Z, 1.0, Vec3::Z) > 0.0);
+    assert_eq!(blue.emitter_pdf(Vec3::Z, 0, 0, Vec3::NEG_Z, 1.0), 0.0);
+    assert!(blue.emitter_pdf(Vec3::Z, 1, 0, Vec3::NEG_Z, 1.0) > 0.0);
     assert!(!Lights::build(&scene(vec![], vec![], 1.0), &[]).is_empty());
     assert!(!Lights::build(&scene(vec![lamp(POINT, 1.0, Vec3::Z)], vec![], 0.0), &[]).is_empty());
 }
@@ -75,7 +75,7 @@ fn lights_add_up_however_they_are_chosen() {
         let mut lamps = vec![strong.clone(), weak.clone(), away.clone()];
         lamps.extend(vec![lamp(PANEL, 1e-6, Vec3::new(0.0, 0.0, -0.5)); 2 * copies]);
         let lights = Lights::build(&scene(lamps, Vec::new(), 0.0), &[]);
-        assert_close(irradiance(&lights, p, Vec3::Z, 4000, 24), apart, 2e-3);
+        assert_close(irradiance(&lights, p, Vec3::Z, 40_000, 8), apart, 2e-3);
     }
 }
 
@@ -186,10 +186,11 @@ proptest! {
         corners in prop::array::uniform3(odd_vector()),
         emission in odd_number(),
         from in (-0.5_f32..0.5, -0.5_f32..0.5, -0.5_f32..0.5).prop_map(Vec3::from),
+        copies in prop::sample::select(vec![1_usize, 40]),
         seed in any::<u64>(),
     ) {
         let mesh = object(&corners, &[[0, 1, 2], [1, 1, 2]], vec![0, 0], None);
-        let lights = Lights::build(&scene(lamps, vec![mesh], emission), &[Rgb::splat(emission)]);
+        let lights = Lights::build(&scene(vec![lamps; copies].concat(), vec![mesh], emission), &[Rgb::splat(emission)]);
         prop_assert!(lights.total_flux().0.iter().all(|c| *c >= 0.0 && c.is_finite()));
         for proxy in lights.lamp_proxies() {
             prop_assert!(proxy.triangles.iter().flatten().all(|&v| (v as usize) < proxy.positions.len()));

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use glam::Vec3;
 use light_support::{KIND, Random, assert_close, irradiance, lamp, meets, object, scene, turned};
 use rgp_renderer::color::Rgb;
-use rgp_renderer::light::Lights;
+use rgp_renderer::light::{Lights, Receiver};
 use rgp_renderer::scene::{Lamp, LampShape, Scene};
 
 /// Where all of the tests look from.
@@ -39,9 +39,9 @@ fn wide_shapes() -> impl Iterator<Item = LampShape> {
     shapes().into_iter().filter(move |shape| !is_small(shape))
 }
 
-/// A lamp over `FROM`, tilted.
+/// A lamp over `FROM`, tilted and stretched.
 fn placed(shape: LampShape) -> Lamp {
-    turned(lamp(shape, 5.0, Vec3::new(0.0, 0.0, 0.25)))
+    turned(Lamp { stretch: [1.3, 0.8], ..lamp(shape, 5.0, Vec3::new(0.0, 0.0, 0.25)) })
 }
 
 fn emissive_scene(lamps: Vec<Lamp>) -> (Scene, Vec<Rgb>) {
@@ -56,21 +56,22 @@ fn emissive_scene(lamps: Vec<Lamp>) -> (Scene, Vec<Rgb>) {
     (scene(lamps, vec![mesh], 0.0), vec![Rgb([3.0, 1.0, 0.0]), Rgb([1.0, 0.0, 9.0])])
 }
 
-/// Sum of the radiance and of the pdf of everything a ray from `FROM` meets.
-fn met(scene: &Scene, lights: &Lights, emission: &[Rgb], wi: Vec3) -> (f64, f64) {
+/// Sum of the radiance and of the pdf of everything a ray from `FROM` meets; the pdf is that of a receiver with this
+/// normal.
+fn met(scene: &Scene, lights: &Lights, emission: &[Rgb], wi: Vec3, normal: Option<Vec3>) -> (f64, f64) {
+    let receiver = Receiver { p: FROM, normal };
     let (mut radiance, mut pdf) = (0.0, 0.0);
     let mut add = |r: Rgb, p: f32| {
         radiance += f64::from(r.0[0]);
         pdf += f64::from(p);
     };
-    lights.lamps_crossed(FROM, wi, 0.0..f32::INFINITY, KIND, &mut add);
-    lights.suns(FROM, wi, KIND, &mut add);
+    lights.lamps_crossed(receiver, wi, 0.0..f32::INFINITY, KIND, &mut add);
+    lights.suns(receiver, wi, KIND, &mut add);
     for (index, object) in scene.objects.iter().enumerate() {
         for primitive in 0..object.mesh.triangles.len() {
             let corners = object.corners(primitive);
             if let Some(t) = meets(FROM, wi, corners) {
-                let ng = (corners[1] - corners[0]).cross(corners[2] - corners[0]).as_vec3();
-                let p = lights.emitter_pdf(FROM, index as u32, primitive as u32, wi, t as f32, ng);
+                let p = lights.emitter_pdf(receiver, index as u32, primitive as u32, wi, t as f32);
                 add(emission[object.material(primitive)], p);
             }
         }
@@ -80,16 +81,17 @@ fn met(scene: &Scene, lights: &Lights, emission: &[Rgb], wi: Vec3) -> (f64, f64)
 
 /// χ² of sampled directions in cells of (cos θ, φ) about +Z against the pdf integrated over each cell.
 #[track_caller]
-fn assert_spread_as_pdf(scene: &Scene, emission: &[Rgb], name: &str) {
+fn assert_spread_as_pdf(scene: &Scene, emission: &[Rgb], normal: Option<Vec3>, name: &str) {
     const ROWS: usize = 24;
     const COLUMNS: usize = 24;
     const PARTS: usize = 64;
     let lights = Lights::build(scene, emission);
+    let receiver = Receiver { p: FROM, normal };
     let count = 200_000;
     let mut hits = vec![0.0; ROWS * COLUMNS + 1];
     let mut random = Random(9);
     for _ in 0..count {
-        let cell = lights.sample_direct(FROM, random.uniforms()).map_or(ROWS * COLUMNS, |sample| {
+        let cell = lights.sample_direct(receiver, random.uniforms()).map_or(ROWS * COLUMNS, |sample| {
             let row = ((0.5 - 0.5 * sample.wi.z) * ROWS as f32) as usize;
             let turn = sample.wi.y.atan2(sample.wi.x) / std::f32::consts::TAU + 0.5;
             row.min(ROWS - 1) * COLUMNS + ((turn * COLUMNS as f32) as usize).min(COLUMNS - 1)
@@ -108,7 +110,7 @@ fn assert_spread_as_pdf(scene: &Scene, emission: &[Rgb], name: &str) {
             let (sin, cos) = (2.0 * PI * (column / COLUMNS as f64 - 0.5)).sin_cos();
             let ring = (1.0 - z * z).sqrt();
             let wi = Vec3::new((ring * cos) as f32, (ring * sin) as f32, z as f32).normalize();
-            pdf += met(scene, &lights, emission, wi).1;
+            pdf += met(scene, &lights, emission, wi, normal).1;
         }
         let share = pdf * 4.0 * PI / (ROWS * COLUMNS * PARTS * PARTS) as f64;
         whole += share;
@@ -135,28 +137,33 @@ fn assert_spread_as_pdf(scene: &Scene, emission: &[Rgb], name: &str) {
 fn each_lamps_directions_are_spread_as_its_pdf_says() {
     for shape in wide_shapes() {
         let name = format!("{shape:?}");
-        assert_spread_as_pdf(&scene(vec![placed(shape)], Vec::new(), 0.0), &[], &name);
+        assert_spread_as_pdf(&scene(vec![placed(shape)], Vec::new(), 0.0), &[], None, &name);
     }
 }
 
 #[test]
 fn emissive_triangles_directions_are_spread_as_their_pdf_says() {
     let (scene, emission) = emissive_scene(Vec::new());
-    assert_spread_as_pdf(&scene, &emission, "mesh");
+    assert_spread_as_pdf(&scene, &emission, None, "mesh");
 }
 
 #[test]
 fn directions_of_many_lights_are_spread_as_their_pdf_says() {
     let (scene, emission) = emissive_scene(wide_shapes().map(placed).collect());
-    assert_spread_as_pdf(&scene, &emission, "all");
-    // More lights than are weighed at each point.
-    let lamps = (0..70).map(|i| {
+    assert_spread_as_pdf(&scene, &emission, None, "all");
+}
+
+#[test]
+fn directions_chosen_by_the_tree_are_spread_as_their_pdf_says() {
+    let lamps = (0..60).map(|i| {
         let mut lamp = lamp(LampShape::Point { radius: 0.1, soft_falloff: true }, 1.0 + i as f32, Vec3::ZERO);
         lamp.position = Random(i).direction() * 0.4;
         lamp
     });
-    let (scene, emission) = emissive_scene(lamps.collect());
-    assert_spread_as_pdf(&scene, &emission, "seventy");
+    let (scene, emission) = emissive_scene(lamps.chain(wide_shapes().map(placed)).collect());
+    for normal in [None, Some(Vec3::new(0.6, 0.0, 0.8))] {
+        assert_spread_as_pdf(&scene, &emission, normal, &format!("{normal:?}"));
+    }
 }
 
 #[test]
@@ -170,7 +177,7 @@ fn a_sample_and_the_ray_that_meets_it_agree() {
         while compared < 2000 {
             let Some(sample) = lights.sample_direct(FROM, random.uniforms()) else { continue };
             compared += 1;
-            let (radiance, pdf) = met(&scene, &lights, &[], sample.wi);
+            let (radiance, pdf) = met(&scene, &lights, &[], sample.wi, None);
             if pdf == 0.0 {
                 // Rounding may carry a sample over the light's edge.
                 missed += 1;
@@ -197,7 +204,7 @@ fn rays_that_meet_lights_by_chance_bring_the_same_irradiance() {
         let (mut random, count, mut sum, mut squares) = (Random(4), 1_000_000, 0.0, 0.0);
         for _ in 0..count {
             let wi = random.direction();
-            let value = met(&scene, &lights, &[], wi).0 * f64::from(wi.dot(normal).max(0.0)) * 4.0 * PI;
+            let value = met(&scene, &lights, &[], wi, None).0 * f64::from(wi.dot(normal).max(0.0)) * 4.0 * PI;
             sum += value;
             squares += value * value;
         }

@@ -39,7 +39,8 @@ fn layout(turned: DQuat) -> Layout {
     let triangles = [[p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0)], [p(0.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)]];
     let triangle =
         |i: usize| SurfaceTriangle { corners: triangles[i], normal: normal(triangles[i]), glossy: false };
-    Layout::new(grid, NormalClasses::Six, 2, triangle, |_| true, || true).expect("nobody cancels")
+    Layout::new(grid, NormalClasses::Six, 2, triangle, |points| vec![true; points.len()], || true)
+        .expect("nobody cancels")
 }
 
 /// Photon `i` of `n`², evenly over the square.

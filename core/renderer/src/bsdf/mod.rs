@@ -24,6 +24,7 @@ mod lobe;
 mod material;
 mod principled;
 mod reflection;
+mod rough;
 mod sanitize;
 mod varying;
 
@@ -207,6 +208,12 @@ impl Bsdf<'_> {
     #[must_use]
     pub fn wo(&self) -> Vec3 {
         self.wo
+    }
+
+    /// Shading normal of the side that light must come from to reach `wo`; `None` where it may come through.
+    #[must_use]
+    pub fn lit_side(&self) -> Option<Vec3> {
+        (!self.lobes.iter().any(Lobe::is_transmission)).then_some(self.frame.ns)
     }
 
     /// True when a lobe of `set` is there.

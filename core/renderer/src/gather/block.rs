@@ -155,7 +155,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let g = self.gatherer;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.sample) << 16 | 1));
         let (kind, width) = (visibility::CAMERA, g.camera_width);
-        let mut sampled = Sampled { pdf: None, shares: Shares::EVEN, kind, width };
+        let mut sampled = Sampled { pdf: None, shares: Shares::EVEN, kind, lit_side: None, width };
         let (mut first, mut throughput) = (Some(hit), Rgb::WHITE);
         let transparent_film = g.lit.accel.scene().world.film_transparent;
         for depth in 0..g.max_depth {
@@ -224,11 +224,11 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     fn shadow(&self, lane: usize, u: [f32; 3]) -> Option<ShadowRay> {
         let g = self.gatherer;
         if self.lambert.set[lane] {
-            let sample = g.lit.lights.sample_direct(self.lambert.p[lane], u)?;
+            let sample = g.lit.lights.sample_direct(self.lambert.receiver(lane), u)?;
             return lambert_shadow_ray(&self.lambert, lane, &sample, g.shares);
         }
         let vertex = self.vertices[lane].as_ref()?;
-        let sample = g.lit.lights.sample_direct(vertex.surface.p, u)?;
+        let sample = g.lit.lights.sample_direct(vertex.surface.receiver(), u)?;
         let mut shadow = shadow_ray(&vertex.surface, &sample, LobeSet::ALL, g.shares)?;
         shadow.radiance *= vertex.throughput;
         Some(shadow)
@@ -343,8 +343,13 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let g = self.gatherer;
         let weight = gather_ray.weight;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(index) << 16 | 2));
+        let lit_side = match &self.vertices[lane] {
+            Some(vertex) => vertex.surface.bsdf.lit_side(),
+            None => Some(self.lambert.ns[lane]),
+        };
         let width = Width::of_solid_angle(solid_angle);
-        let sampled = Sampled { pdf: gather_ray.pdf, shares: g.shares, kind: gather_ray.kind, width };
+        let (pdf, kind) = (gather_ray.pdf, gather_ray.kind);
+        let sampled = Sampled { pdf, shares: g.shares, kind, lit_side, width };
         let met = g.meet(self.packet.ray(lane), Some(hit), sampled, &mut rng);
         let sample = &mut self.samples[lane];
         sample.direct += weight * met.light * g.direct_share;

@@ -7,6 +7,7 @@ use glam::Vec3;
 
 use crate::accel::{LANES, OFFSET, Packet};
 use crate::color::Rgb;
+use crate::light::Receiver;
 use crate::math::Frame;
 use crate::sampling::cosine_hemisphere;
 
@@ -67,6 +68,11 @@ impl LambertLanes {
         self.set[lane] = true;
         self.weight[lane] = weight;
         (self.p[lane], self.ng[lane], self.ns[lane]) = (p, ng, ns);
+    }
+
+    /// What lights a lane.
+    pub(super) fn receiver(&self, lane: usize) -> Receiver {
+        Receiver { p: self.p[lane], normal: Some(self.ns[lane]) }
     }
 
     /// Aims one gather ray per lane at the points (x, y) of the unit square; gives the densities per solid angle.

@@ -9,6 +9,7 @@ use crate::accel::{Hit, Ray};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
+use crate::light::Receiver;
 use crate::lit_scene::{Surface, ray_kind};
 use crate::sampling::Rng;
 use crate::scene::visibility;
@@ -33,6 +34,8 @@ pub(super) struct Sampled {
     pub(super) shares: Shares,
     /// Kind of the ray, a bit of [`visibility`].
     pub(super) kind: u32,
+    /// [`Bsdf::lit_side`](crate::bsdf::Bsdf::lit_side) of the surface it left.
+    pub(super) lit_side: Option<Vec3>,
     /// How wide the ray is.
     pub(super) width: Width,
 }
@@ -66,7 +69,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         rng: &mut Rng,
     ) -> Met<'a> {
         let mut met = Met { light: Rgb::BLACK, surface: None, distance: 0.0, through: Rgb::WHITE };
-        let (from, lit) = (ray.origin, self.lit);
+        let (from, lit) = (Receiver { p: ray.origin, normal: sampled.lit_side }, self.lit);
         let mut known = first;
         for _ in 0..MAX_TRANSPARENT {
             let mut hit = known.take().unwrap_or_else(|| lit.accel.intersect(&ray));
@@ -85,14 +88,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             met.distance += hit.t;
             let surface = lit.surface(&ray, hit, sampled.width.at(met.distance));
             if !surface.bsdf.emission.is_black() {
-                let pdf = lit.lights.emitter_pdf(
-                    from,
-                    hit.object,
-                    hit.primitive,
-                    ray.direction,
-                    met.distance,
-                    surface.ng,
-                );
+                let (direction, distance) = (ray.direction, met.distance);
+                let pdf = lit.lights.emitter_pdf(from, hit.object, hit.primitive, direction, distance);
                 met.light += met.through * surface.bsdf.emission * sampled.weight(pdf);
             }
             let transparency = surface.bsdf.transparency;
@@ -110,7 +107,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
     }
 
     /// Light from outside the scene.
-    fn escaped(&self, from: Vec3, direction: Vec3, sampled: Sampled) -> Rgb {
+    fn escaped(&self, from: Receiver, direction: Vec3, sampled: Sampled) -> Rgb {
         let world = &self.lit.accel.scene().world;
         let mut light = if world.visibility & sampled.kind == 0 { Rgb::BLACK } else { world.radiance };
         self.lit.lights.suns(from, direction, sampled.kind, &mut |radiance, pdf| {
@@ -169,12 +166,9 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 return radiance + target.read(self.estimator, readable.place, throughput);
             }
             let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
-            let met = self.meet(
-                ray,
-                Some(hit),
-                Sampled { pdf, shares: Shares::EVEN, kind, width: Width::NONE },
-                rng,
-            );
+            let lit_side = surface.bsdf.lit_side();
+            let sampled = Sampled { pdf, shares: Shares::EVEN, kind, lit_side, width: Width::NONE };
+            let met = self.meet(ray, Some(hit), sampled, rng);
             radiance += throughput * met.light;
             throughput *= met.through;
             let Some(next) = met.surface else { break };
@@ -194,7 +188,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             return Rgb::BLACK;
         }
         let u = [rng.draw(), rng.draw(), rng.draw()];
-        let sample = self.lit.lights.sample_direct(surface.p, u);
+        let sample = self.lit.lights.sample_direct(surface.receiver(), u);
         let shadow = sample.and_then(|sample| shadow_ray(surface, &sample, lobes, Shares::EVEN));
         shadow
             .map_or(Rgb::BLACK, |shadow| shadow.radiance * transmittance(self.lit, &shadow, &mut rays.shadow))

@@ -4,6 +4,7 @@ use std::f32::consts::{FRAC_1_PI, FRAC_PI_4, PI};
 
 use glam::{Vec2, Vec3};
 
+use super::cluster::Bounds;
 use super::proxy::Hull;
 use super::spherical_rectangle::SphericalRectangle;
 use super::spread::Spread;
@@ -88,6 +89,19 @@ impl AreaLamp {
         let [x, y] = [self.x_axis * self.half.x, self.y_axis * self.half.y];
         let c = self.center;
         proxy::rectangle(c, [c - x - y, c + x - y, c + x + y, c - x + y])
+    }
+
+    /// Where its light is and goes.
+    pub(super) fn bounds(&self) -> Bounds {
+        let extent = (self.x_axis * self.half.x).abs() + (self.y_axis * self.half.y).abs();
+        Bounds {
+            low: self.center - extent,
+            high: self.center + extent,
+            axis: self.normal,
+            spread: 0.0,
+            reach: self.spread.reach().atan(),
+            ..Bounds::ball(self.center, 0.0, self.power.mean() * FRAC_1_PI * self.spread.peak())
+        }
     }
 
     /// About the irradiance at `p`, for choosing between lights; 0 only where there is none.

@@ -1,10 +1,12 @@
-//! Emissive meshes: the emitting triangles of one object as one light, chosen by area × radiance. Both sides emit.
+//! Emissive meshes: the emitting triangles of one object as one light. Both sides emit. Photons choose among its triangles
+//! by area × radiance; direct light chooses each triangle for itself.
 
-use std::f32::consts::{FRAC_1_PI, TAU};
+use std::f32::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3, Vec3};
 
+use super::cluster::Bounds;
 use super::select::Cdf;
 use super::{LightSample, Photon, is_in_reach, warp};
 use crate::color::Rgb;
@@ -17,16 +19,13 @@ pub(super) struct MeshEmitter {
     scene_from_mesh: Option<DAffine3>,
     /// Radiance of each material slot; triangles of later slots have the last one.
     slot_radiance: Vec<Rgb>,
-    /// Emitting triangles of the mesh.
+    /// Emitting triangles of the mesh, in order.
     triangles: Vec<u32>,
     /// Over `triangles`, by area × mean radiance.
     cdf: Cdf,
     /// Sum of area × mean radiance.
     weight: f64,
     flux: Rgb,
-    center: Vec3,
-    /// Squared radius of the ball about the emitting triangles.
-    radius_squared: f32,
 }
 
 impl MeshEmitter {
@@ -39,7 +38,6 @@ impl MeshEmitter {
         let mut triangles = Vec::new();
         let mut weights = Vec::new();
         let mut flux = [0.0; 3];
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for index in 0..object.mesh.triangles.len() {
             let radiance = emission[object.material(index)];
             let corners = object.corners(index);
@@ -53,10 +51,6 @@ impl MeshEmitter {
             for (sum, channel) in flux.iter_mut().zip(radiance.0) {
                 *sum += f64::from(channel) * area * f64::from(TAU);
             }
-            for corner in corners {
-                low = low.min(corner);
-                high = high.max(corner);
-            }
         }
         let weight = weights.iter().sum();
         Some(Self {
@@ -67,8 +61,6 @@ impl MeshEmitter {
             triangles,
             weight,
             flux: Rgb(flux.map(|sum| sum as f32)),
-            center: (0.5 * (low + high)).as_vec3(),
-            radius_squared: (0.25 * (high - low).length_squared()) as f32,
         })
     }
 
@@ -77,19 +69,36 @@ impl MeshEmitter {
         self.flux
     }
 
-    /// About the irradiance at `p`, for choosing between lights.
-    pub(super) fn irradiance_estimate(&self, p: Vec3) -> f32 {
-        let distance_squared = (p - self.center).length_squared();
-        self.flux.mean() * (0.25 * FRAC_1_PI) / distance_squared.max(self.radius_squared).max(1e-12)
+    /// Where the light of each emitting triangle is and goes.
+    pub(super) fn bounds(&self) -> impl Iterator<Item = Bounds> {
+        (0..self.triangles.len()).map(|which| {
+            let triangle = self.triangle(which);
+            let [a, b, c] = triangle.corners.map(|corner| corner.as_vec3());
+            Bounds {
+                low: a.min(b).min(c),
+                high: a.max(b).max(c),
+                axis: triangle.normal,
+                spread: 0.0,
+                reach: FRAC_PI_2,
+                two_sided: true,
+                distant: false,
+                intensity: triangle.radiance.mean() * triangle.area,
+            }
+        })
     }
 
-    /// A point of the mesh as seen from `p`; `choice` chooses the triangle.
-    pub(super) fn sample(&self, p: Vec3, choice: f32, u: [f32; 2]) -> Option<LightSample> {
-        let triangle = self.triangle(choice);
+    /// Which of the emitting triangles triangle `primitive` of the mesh is.
+    pub(super) fn which(&self, primitive: u32) -> Option<usize> {
+        self.triangles.binary_search(&primitive).ok()
+    }
+
+    /// A point of one of the emitting triangles as seen from `p`.
+    pub(super) fn sample(&self, p: Vec3, which: usize, u: [f32; 2]) -> Option<LightSample> {
+        let triangle = self.triangle(which);
         let along = (triangle.point(u) - p.as_dvec3()).as_vec3();
         let distance = along.length();
         let wi = along.try_normalize()?;
-        let pdf = self.pdf(triangle.radiance, distance, wi.dot(triangle.normal));
+        let pdf = triangle.pdf(wi, distance);
         (pdf > 0.0 && pdf.is_finite()).then(|| LightSample {
             wi,
             distance,
@@ -99,15 +108,9 @@ impl MeshEmitter {
         })
     }
 
-    /// Pdf per solid angle with which [`MeshEmitter::sample`] finds a point of triangle `primitive` at distance `t`,
-    /// where its unit normal and the ray make the angle of cosine `cos`.
-    pub(super) fn primitive_pdf(&self, primitive: usize, t: f32, cos: f32) -> f32 {
-        self.pdf(self.radiance(primitive), t, cos)
-    }
-
     /// A photon whose flux over its probability is the flux of the whole mesh, in the color of the chosen triangle.
     pub(super) fn emit(&self, choice: f32, position: [f32; 2], direction: [f32; 2]) -> Photon {
-        let triangle = self.triangle(choice);
+        let triangle = self.triangle(self.cdf.choose(choice).index);
         let side = 2.0 * direction[0];
         let normal = if side < 1.0 { triangle.normal } else { -triangle.normal };
         Photon {
@@ -120,40 +123,44 @@ impl MeshEmitter {
         }
     }
 
-    /// A triangle is chosen by area × radiance and a point on it uniformly, so the pdf per area is radiance / weight.
-    fn pdf(&self, radiance: Rgb, distance: f32, cos: f32) -> f32 {
-        let pdf_area = (f64::from(radiance.mean()) / self.weight) as f32;
-        if cos == 0.0 { 0.0 } else { pdf_area * distance * distance / cos.abs() }
-    }
-
     fn radiance(&self, primitive: usize) -> Rgb {
         self.slot_radiance[self.mesh.slot(primitive).min(self.slot_radiance.len() - 1)]
     }
 
-    fn triangle(&self, choice: f32) -> Triangle {
-        let primitive = self.triangles[self.cdf.choose(choice).index] as usize;
+    /// One of the emitting triangles.
+    pub(super) fn triangle(&self, which: usize) -> Triangle {
+        let primitive = self.triangles[which] as usize;
         let corners = self.mesh.corners(primitive).map(Vec3::as_dvec3);
         let corners = match &self.scene_from_mesh {
             Some(transform) => corners.map(|p| transform.transform_point3(p)),
             None => corners,
         };
         let [a, b, c] = corners;
+        let (normal, length) = (b - a).cross(c - a).normalize_and_length();
         Triangle {
             corners,
-            normal: (b - a).cross(c - a).normalize().as_vec3(),
+            normal: normal.as_vec3(),
+            area: (0.5 * length) as f32,
             radiance: self.radiance(primitive),
         }
     }
 }
 
 /// A triangle in scene space.
-struct Triangle {
+pub(super) struct Triangle {
     corners: [DVec3; 3],
     normal: Vec3,
+    area: f32,
     radiance: Rgb,
 }
 
 impl Triangle {
+    /// Pdf per solid angle of a point chosen uniformly over the area, at distance `t` along `wi`.
+    pub(super) fn pdf(&self, wi: Vec3, t: f32) -> f32 {
+        let cos = wi.dot(self.normal).abs();
+        if cos == 0.0 { 0.0 } else { t * t / (self.area * cos) }
+    }
+
     /// Uniform over the area (Heitz 2019, "A Low-Distortion Map Between Triangle and Square").
     fn point(&self, u: [f32; 2]) -> DVec3 {
         let [mut s, mut t] = u.map(f64::from);

@@ -5,6 +5,7 @@
 //! All is in scene space. Lamps have Blender's units and agree with Cycles: see each file for its formulas.
 
 mod area;
+mod cluster;
 mod distant;
 mod emitter;
 mod point;
@@ -15,25 +16,24 @@ mod spherical_rectangle;
 mod spot;
 mod spread;
 mod sun;
+mod tree;
 mod warp;
 mod world;
 
 use std::ops::Range;
 
-use arrayvec::ArrayVec;
 use glam::Vec3;
 
 use crate::color::Rgb;
 use crate::scene::Scene;
+use cluster::Cluster;
 use distant::SceneBall;
 use emitter::MeshEmitter;
 pub use proxy::LampProxy;
 use select::{Cdf, Choice};
 use shape::{Light, Shape};
+use tree::Tree;
 use world::WorldLight;
-
-/// Up to this many lights, each look-up weighs them all by what they give at the point; more are weighed by power.
-const WEIGHED_AT_POINT: usize = 64;
 
 /// Lengths and distances from the scene's middle beyond this (scene units, the scene filling a unit cube) are a mistake:
 /// the light is left out.
@@ -62,6 +62,21 @@ pub struct Emission {
     pub lamp: Option<usize>,
     /// Ray kinds that see the light: a surface whose lobes are not among them is not lit by it directly.
     pub visibility: u32,
+}
+
+/// Where light is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Receiver {
+    /// The point.
+    pub p: Vec3,
+    /// Unit normal of the side that is lit; `None` where light from both sides counts.
+    pub normal: Option<Vec3>,
+}
+
+impl From<Vec3> for Receiver {
+    fn from(p: Vec3) -> Self {
+        Self { p, normal: None }
+    }
 }
 
 /// A direction towards a light.
@@ -116,9 +131,27 @@ struct Crossing {
     pdf: f32,
 }
 
+/// What direct light is chosen among: a lamp, or a triangle of an emissive mesh.
+#[derive(Debug)]
+struct Emitter {
+    /// Index into [`Lights::lights`].
+    light: u32,
+    /// Among the emitting triangles of the mesh.
+    triangle: u32,
+    cluster: Cluster,
+}
+
 /// All lights of a scene.
 pub struct Lights {
     lights: Vec<Light>,
+    /// Light by light.
+    emitters: Vec<Emitter>,
+    /// By light: its first emitter.
+    first_emitter: Vec<usize>,
+    /// Over `emitters`: the choice of direct light.
+    tree: Tree,
+    /// Indices of suns that rays can meet.
+    suns: Vec<usize>,
     /// Index into `lights` of each object that emits.
     light_of_object: Vec<Option<usize>>,
     world: WorldLight,
@@ -127,8 +160,6 @@ pub struct Lights {
     ball: SceneBall,
     /// Over `lights` and then the world, by flux: the choice of photons.
     by_flux: Option<Cdf>,
-    /// Over `lights`, by flux: the choice of direct light where there are many.
-    by_power: Option<Cdf>,
     total_flux: Rgb,
 }
 
@@ -155,18 +186,28 @@ impl Lights {
         let ball = SceneBall::new(scene.bounds);
         let world = WorldLight::new(&scene.world);
         let mut fluxes: Vec<Rgb> = lights.iter().map(|light| light.flux(&ball)).collect();
-        let means =
-            |fluxes: &[Rgb]| -> Vec<f64> { fluxes.iter().map(|flux| f64::from(flux.mean())).collect() };
-        let by_power = Cdf::with_even_share(&means(&fluxes));
         fluxes.push(world.flux(&ball));
+        let means: Vec<f64> = fluxes.iter().map(|flux| f64::from(flux.mean())).collect();
+        let (mut emitters, mut bounds, mut first_emitter) = (Vec::new(), Vec::new(), Vec::new());
+        for (light, index) in lights.iter().zip(0..) {
+            first_emitter.push(emitters.len());
+            for (triangle, bounds_of_one) in (0..).zip(light.bounds()) {
+                emitters.push(Emitter { light: index, triangle, cluster: Cluster::new(&bounds_of_one) });
+                bounds.push(bounds_of_one);
+            }
+        }
+        let is_sun = |light: &Light| matches!(light.shape, Shape::Sun(_)) && light.can_be_met();
         Self {
+            tree: Tree::build(&bounds),
+            emitters,
+            first_emitter,
+            suns: (0..lights.len()).filter(|&index| is_sun(&lights[index])).collect(),
             lights,
             light_of_object,
             world,
             has_world: !positive(scene.world.radiance).is_black(),
             ball,
-            by_flux: Cdf::with_even_share(&means(&fluxes)),
-            by_power,
+            by_flux: Cdf::with_even_share(&means),
             total_flux: fluxes.into_iter().sum(),
         }
     }
@@ -226,18 +267,21 @@ impl Lights {
         })
     }
 
-    /// A direction from `p` towards a lamp or an emissive mesh: `u[0]` chooses it, `u[1..3]` the place on it. `None` where
-    /// the sample contributes nothing.
+    /// A direction from the receiver towards a lamp or an emissive triangle: `u[0]` chooses it, `u[1..3]` the place on it.
+    /// `None` where the sample contributes nothing.
     #[must_use]
-    pub fn sample_direct(&self, p: Vec3, u: [f32; 3]) -> Option<DirectSample> {
+    pub fn sample_direct(&self, receiver: impl Into<Receiver>, u: [f32; 3]) -> Option<DirectSample> {
         let [choice, position @ ..] = u;
-        let chosen = self.choose(p, choice)?;
-        let light = &self.lights[chosen.index];
+        let receiver = receiver.into();
+        let p = receiver.p;
+        let chosen = self.choose(&receiver, choice)?;
+        let emitter = &self.emitters[chosen.index];
+        let light = &self.lights[emitter.light as usize];
         let sample = match &light.shape {
             Shape::Point(lamp) => lamp.sample(p, position)?,
             Shape::Area(lamp) => lamp.sample(p, position)?,
             Shape::Sun(lamp) => lamp.sample(position),
-            Shape::Mesh(mesh) => mesh.sample(p, chosen.rest, position)?,
+            Shape::Mesh(mesh) => mesh.sample(p, emitter.triangle as usize, position)?,
         };
         Some(DirectSample {
             wi: sample.wi,
@@ -251,14 +295,21 @@ impl Lights {
     }
 
     /// Pdf per solid angle with which [`Lights::sample_direct`] from `from` finds the direction `wi`, whose ray meets
-    /// triangle `primitive` of `object` at distance `t`. `ng` is the triangle's normal in scene space, of any length.
-    /// 0 where the triangle does not emit.
+    /// triangle `primitive` of `object` at distance `t`. 0 where the triangle does not emit.
     #[must_use]
-    pub fn emitter_pdf(&self, from: Vec3, object: u32, primitive: u32, wi: Vec3, t: f32, ng: Vec3) -> f32 {
+    pub fn emitter_pdf(
+        &self,
+        from: impl Into<Receiver>,
+        object: u32,
+        primitive: u32,
+        wi: Vec3,
+        t: f32,
+    ) -> f32 {
         let Some(index) = self.light_of_object.get(object as usize).copied().flatten() else { return 0.0 };
         let Shape::Mesh(mesh) = &self.lights[index].shape else { return 0.0 };
-        let cos = wi.dot(ng.normalize_or_zero());
-        mesh.primitive_pdf(primitive as usize, t, cos) * self.choice_probability(from, index)
+        let Some(which) = mesh.which(primitive) else { return 0.0 };
+        let emitter = self.first_emitter[index] + which;
+        mesh.triangle(which).pdf(wi, t) * self.choice_probability(&from.into(), emitter)
     }
 
     /// Calls back, for each lamp the ray meets at a distance in `span`, with its radiance and the pdf per solid angle
@@ -266,13 +317,14 @@ impl Lights {
     /// ray's kind (one bit of [`crate::scene::visibility`]) are skipped, as are suns and what `is_delta` stands for.
     pub fn lamps_crossed(
         &self,
-        from: Vec3,
+        from: impl Into<Receiver>,
         wi: Vec3,
         span: Range<f32>,
         ray_kind_bit: u32,
         each: &mut dyn FnMut(Rgb, f32),
     ) {
-        let ray = Ray { from, wi, span };
+        let receiver = from.into();
+        let ray = Ray { from: receiver.p, wi, span };
         for (index, light) in self.lights.iter().enumerate() {
             if light.visibility & ray_kind_bit == 0 || !light.can_be_met() {
                 continue;
@@ -283,49 +335,57 @@ impl Lights {
                 Shape::Sun(_) | Shape::Mesh(_) => None,
             };
             if let Some(crossing) = crossing {
-                each(crossing.radiance, crossing.pdf * self.choice_probability(from, index));
+                let emitter = self.first_emitter[index];
+                each(crossing.radiance, crossing.pdf * self.choice_probability(&receiver, emitter));
             }
         }
     }
 
     /// As [`Lights::lamps_crossed`], for the suns a ray that leaves the scene sees.
-    pub fn suns(&self, from: Vec3, wi: Vec3, ray_kind_bit: u32, each: &mut dyn FnMut(Rgb, f32)) {
-        for (index, light) in self.lights.iter().enumerate() {
+    pub fn suns(
+        &self,
+        from: impl Into<Receiver>,
+        wi: Vec3,
+        ray_kind_bit: u32,
+        each: &mut dyn FnMut(Rgb, f32),
+    ) {
+        let receiver = from.into();
+        for &index in &self.suns {
+            let light = &self.lights[index];
             let Shape::Sun(lamp) = &light.shape else { continue };
-            if light.visibility & ray_kind_bit == 0 || !light.can_be_met() {
+            if light.visibility & ray_kind_bit == 0 {
                 continue;
             }
             if let Some(crossing) = lamp.crossing(wi) {
-                each(crossing.radiance, crossing.pdf * self.choice_probability(from, index));
+                let emitter = self.first_emitter[index];
+                each(crossing.radiance, crossing.pdf * self.choice_probability(&receiver, emitter));
             }
         }
     }
 
-    /// About the irradiance each light gives at `p`; `None` for more lights than are weighed this way.
-    fn weights(&self, p: Vec3) -> Option<ArrayVec<f32, WEIGHED_AT_POINT>> {
-        (self.lights.len() <= WEIGHED_AT_POINT)
-            .then(|| self.lights.iter().map(|light| light.irradiance_estimate(p)).collect())
-    }
-
-    /// The light that `u` in 0..1 chooses to light `p`.
-    fn choose(&self, p: Vec3, u: f32) -> Option<Choice> {
-        if self.lights.len() == 1 {
+    /// The emitter that `u` in 0..1 chooses to light the receiver.
+    fn choose(&self, receiver: &Receiver, u: f32) -> Option<Choice> {
+        if self.emitters.len() == 1 {
             return Some(Choice { index: 0, probability: 1.0, rest: u });
         }
-        match self.weights(p) {
-            Some(weights) => select::choose(&weights, u),
-            None => Some(self.by_power.as_ref()?.choose(u)),
-        }
+        self.tree.choose(receiver, u, |index| self.irradiance_estimate(receiver, index))
     }
 
-    /// Probability with which [`Lights::choose`] chooses light `index` for `p`.
-    fn choice_probability(&self, p: Vec3, index: usize) -> f32 {
-        if self.lights.len() == 1 {
+    /// Probability with which [`Lights::choose`] chooses an emitter.
+    fn choice_probability(&self, receiver: &Receiver, index: usize) -> f32 {
+        if self.emitters.len() == 1 {
             return 1.0;
         }
-        match self.weights(p) {
-            Some(weights) => select::probability(&weights, index),
-            None => self.by_power.as_ref().map_or(0.0, |cdf| cdf.probability(index) as f32),
+        self.tree.probability(receiver, index, |index| self.irradiance_estimate(receiver, index))
+    }
+
+    /// About the irradiance an emitter gives the receiver; 0 only where there is none.
+    fn irradiance_estimate(&self, receiver: &Receiver, index: usize) -> f32 {
+        let emitter = &self.emitters[index];
+        match &self.lights[emitter.light as usize].shape {
+            Shape::Point(lamp) => lamp.irradiance_estimate(receiver.p) * emitter.cluster.incidence(receiver),
+            Shape::Area(lamp) => lamp.irradiance_estimate(receiver.p) * emitter.cluster.incidence(receiver),
+            Shape::Sun(_) | Shape::Mesh(_) => emitter.cluster.irradiance(receiver),
         }
     }
 }

@@ -5,6 +5,7 @@ use std::f32::consts::{FRAC_1_PI, PI, TAU};
 
 use glam::Vec3;
 
+use super::cluster::Bounds;
 use super::proxy::Hull;
 use super::spot::SpotCone;
 use super::{Crossing, LARGEST_LENGTH, LightSample, Photon, Ray, proxy, warp};
@@ -49,6 +50,15 @@ impl PointLamp {
     /// Triangles that hold the lamp: a cube about the sphere every soft disk lies in.
     pub(super) fn hull(&self) -> Hull {
         proxy::cube(self.center, self.radius)
+    }
+
+    /// Where its light is and goes.
+    pub(super) fn bounds(&self) -> Bounds {
+        let ball = Bounds::ball(self.center, self.radius, self.intensity.mean());
+        match &self.cone {
+            Some(cone) => Bounds { axis: cone.axis(), spread: 0.0, reach: cone.half_angle(), ..ball },
+            None => ball,
+        }
     }
 
     /// About the irradiance at `p`, for choosing between lights; 0 only where there is none.
@@ -118,14 +128,20 @@ impl PointLamp {
         (ray.span.contains(&distance) && !radiance.is_black()).then_some(Crossing { radiance, pdf })
     }
 
-    /// A photon; every one carries the lamp's whole flux.
+    /// A photon; it carries the lamp's whole flux, or about it if a stretched cone has to be weighted.
     ///
     /// Far from the lamp, sphere and soft disk both fill every line that passes within r of the center, so photons are
     /// chosen uniformly over directions and over the disk across each. A sphere's photon starts on the sphere. A soft
     /// disk shows less of itself to near receivers: a point at distance d sees lines up to h = r d / √(r² + d²) from the
     /// center, so the line at h is dark until h² / √(r² − h²) past its closest approach.
     pub(super) fn emit(&self, position: [f32; 2], direction: [f32; 2]) -> Photon {
-        let direction = self.cone.map_or_else(|| warp::sphere(direction), |cone| cone.sample(direction));
+        let (direction, flux) = match &self.cone {
+            None => (warp::sphere(direction), self.flux()),
+            Some(cone) => {
+                let (direction, solid_angle) = cone.sample(direction);
+                (direction, self.intensity * solid_angle)
+            }
+        };
         let across = warp::disk(position) * self.radius;
         let h_squared = across.length_squared();
         let half_chord = (self.radius * self.radius - h_squared).max(0.0).sqrt();
@@ -136,7 +152,7 @@ impl PointLamp {
             (true, true) => (closest, h_squared / half_chord),
             (true, false) => (closest, f32::INFINITY),
         };
-        Photon { origin, direction, flux: self.flux(), normal: None, lit_from }
+        Photon { origin, direction, flux, normal: None, lit_from }
     }
 
     fn attenuation(&self, direction: Vec3) -> f32 {

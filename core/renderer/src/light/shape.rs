@@ -1,8 +1,7 @@
 //! One light of any kind.
 
-use glam::Vec3;
-
 use super::area::AreaLamp;
+use super::cluster::Bounds;
 use super::distant::SceneBall;
 use super::emitter::MeshEmitter;
 use super::point::PointLamp;
@@ -42,7 +41,7 @@ impl Light {
                 Shape::Point(PointLamp::new(lamp, radius, soft_falloff, None)?)
             }
             LampShape::Spot { radius, soft_falloff, cone_angle, blend } => {
-                let cone = SpotCone::new(lamp.axis, cone_angle, blend)?;
+                let cone = SpotCone::new(lamp, cone_angle, blend)?;
                 Shape::Point(PointLamp::new(lamp, radius, soft_falloff, Some(cone))?)
             }
             LampShape::Sun { angle } => Shape::Sun(SunLamp::new(lamp, angle)?),
@@ -61,12 +60,13 @@ impl Light {
         }
     }
 
-    pub(super) fn irradiance_estimate(&self, p: Vec3) -> f32 {
+    /// Bounds of the lamp, or of each emitting triangle.
+    pub(super) fn bounds(&self) -> Vec<Bounds> {
         match &self.shape {
-            Shape::Point(lamp) => lamp.irradiance_estimate(p),
-            Shape::Area(lamp) => lamp.irradiance_estimate(p),
-            Shape::Sun(lamp) => lamp.irradiance_estimate(),
-            Shape::Mesh(mesh) => mesh.irradiance_estimate(p),
+            Shape::Point(lamp) => vec![lamp.bounds()],
+            Shape::Area(lamp) => vec![lamp.bounds()],
+            Shape::Sun(lamp) => vec![lamp.bounds()],
+            Shape::Mesh(mesh) => mesh.bounds().collect(),
         }
     }
 

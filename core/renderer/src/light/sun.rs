@@ -4,6 +4,7 @@ use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, TAU};
 
 use glam::Vec3;
 
+use super::cluster::Bounds;
 use super::distant::SceneBall;
 use super::{Crossing, LightSample, Photon, warp};
 use crate::color::Rgb;
@@ -50,9 +51,14 @@ impl SunLamp {
         self.irradiance * (beams * ball.disk_area())
     }
 
-    /// Irradiance on a surface facing the sun, for choosing between lights.
-    pub(super) fn irradiance_estimate(&self) -> f32 {
-        self.irradiance.mean()
+    /// Where its light comes from.
+    pub(super) fn bounds(&self) -> Bounds {
+        let sin = (self.cone * (2.0 - self.cone)).max(0.0).sqrt();
+        // A cube within the ball of that radius, since look-ups take the ball about the cube.
+        Bounds {
+            distant: true,
+            ..Bounds::ball(self.towards, sin * 3_f32.sqrt().recip(), self.irradiance.mean())
+        }
     }
 
     /// A direction towards the sun.

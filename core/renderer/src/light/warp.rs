@@ -31,9 +31,13 @@ pub(super) fn sphere(u: [f32; 2]) -> Vec3 {
 
 /// The direction at `1 − cos` = `one_minus_cos` from `axis`, turned round it by the share `turn` of a full circle.
 pub(super) fn about(axis: Vec3, one_minus_cos: f32, turn: f32) -> Vec3 {
+    Frame::new(axis).from_local(tilted(one_minus_cos, Vec2::from_angle(2.0 * PI * turn))).normalize()
+}
+
+/// The direction at `1 − cos` = `one_minus_cos` from +Z, towards the unit vector `towards` of the plane.
+pub(super) fn tilted(one_minus_cos: f32, towards: Vec2) -> Vec3 {
     let sin = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
-    let ring = Vec2::from_angle(2.0 * PI * turn) * sin;
-    Frame::new(axis).from_local(ring.extend(1.0 - one_minus_cos)).normalize()
+    (towards * sin).extend(1.0 - one_minus_cos)
 }
 
 /// A direction about `normal` with pdf cos / π (Malley's method).

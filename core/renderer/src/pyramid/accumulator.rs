@@ -4,12 +4,12 @@
 //! different sets differs by the photons' noise too.
 
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicI64, AtomicU32, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use glam::Vec3;
 
-use super::bins::DirectionBins;
+use super::bins::{BinCorners, DirectionBins, LANES, Lanes};
 use super::layout::Layout;
 use crate::color::Rgb;
 use crate::math::{Frame, Side};
@@ -26,8 +26,9 @@ pub struct Accumulator<'a> {
     /// By level, by place: photons of all sets.
     count: Vec<Vec<AtomicU32>>,
     /// By level, by place, where there are glossy surfaces at all; filled where the first photon lands on one.
-    glossy: Vec<Vec<OnceLock<GlossySums>>>,
+    glossy: Vec<Vec<Mutex<GlossySums>>>,
     bins: DirectionBins,
+    corners: BinCorners,
     quantum: f64,
     /// 1 / quantum: exact, since both are powers of two.
     per_quantum: f64,
@@ -35,8 +36,15 @@ pub struct Accumulator<'a> {
     lost: AtomicU64,
 }
 
-/// Quanta of each channel of each bin, the bins of one set after those of the other.
-type GlossySums = Box<[[AtomicI64; 3]]>;
+/// Quanta of each channel of [`LANES`] bins at a time, the bins of one set after those of the other; empty until a photon
+/// lands. One lock costs less than atomic sums for every bin, and leaves the additions to vector code.
+type GlossySums = Box<[[[i64; LANES]; 3]]>;
+
+/// What a photon sends on from a glossy surface. No closure: what is to become vector code has to be inlined for sure.
+pub trait Leaving {
+    /// Flux times BSDF over the surface's tint (W·sr⁻¹) towards unit vectors.
+    fn towards(&self, directions: &Lanes) -> Lanes;
+}
 
 /// The cell a photon was added to.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +57,14 @@ pub struct Landing {
 /// One photon of a billion still is some million quanta, and two thousand times the emitted flux fits in a cell.
 const QUANTUM_BITS: f64 = 52.0;
 
+/// Quanta of a cell over quanta of a bin: bins need fewer bits, and what is steep at grazing has to fit.
+const COARSER: f64 = 4096.0;
+
+/// Numbers below 2⁵¹ added to this are rounded, and stand in its lowest bits: vector code has no other way to make
+/// integers of 64 bits.
+const ROUNDER: f64 = 1.5 * (1_u64 << 52) as f64;
+const MOST_QUANTA: f64 = (1_u64 << 51) as f64;
+
 impl<'a> Accumulator<'a> {
     /// An empty accumulator for light of `total_flux` (largest channel) in all; `bins` where glossy surfaces are read from
     /// the pyramid.
@@ -57,6 +73,7 @@ impl<'a> Accumulator<'a> {
         // A power of two, so that twice the light gives exactly twice the picture.
         let quantum = (f64::from(total_flux.max(f32::MIN_POSITIVE)).log2().ceil() - QUANTUM_BITS).exp2();
         let cells = layout.levels.iter().map(|level| level.index.len());
+        let all_bins = bins.unwrap_or(DirectionBins { elevation: 1, azimuth: 1 });
         Self {
             layout,
             flux: cells.clone().map(|n| std::iter::repeat_with(Default::default).take(n).collect()).collect(),
@@ -66,10 +83,11 @@ impl<'a> Accumulator<'a> {
                 .collect(),
             glossy: cells
                 .map(|n| {
-                    std::iter::repeat_with(OnceLock::new).take(if bins.is_some() { n } else { 0 }).collect()
+                    std::iter::repeat_with(Mutex::default).take(if bins.is_some() { n } else { 0 }).collect()
                 })
                 .collect(),
-            bins: bins.unwrap_or(DirectionBins { elevation: 1, azimuth: 1 }),
+            bins: all_bins,
+            corners: BinCorners::new(all_bins),
             quantum,
             per_quantum: quantum.recip(),
             deposited: AtomicU64::new(0),
@@ -91,25 +109,34 @@ impl<'a> Accumulator<'a> {
         Some(Landing { level, place, set })
     }
 
-    /// Adds what the photon's surface sends in each direction: `leaving` gives flux times BSDF over tint (W·sr⁻¹) towards a
-    /// unit vector. `at` in [0, 1)² is where in each bin that is asked; a random place averages over the bin.
-    pub fn deposit_glossy(&self, landing: Landing, at: [f32; 2], leaving: impl Fn(Vec3) -> Rgb) {
-        let (level, place, count) = (landing.level, landing.place, self.bins.count());
-        let empty = || std::iter::repeat_with(Default::default).take(SETS * count).collect();
-        let sums = self.glossy[level][place].get_or_init(empty);
+    /// Adds what the photon's surface sends in each direction. `at` in [0, 1)² is where in each bin that is asked; a random
+    /// place averages over the bin.
+    #[inline(always)]
+    pub fn deposit_glossy(&self, landing: Landing, at: [f32; 2], leaving: &impl Leaving) {
+        let (level, place, groups) = (landing.level, landing.place, self.corners.groups());
         let frame = Frame::new(self.layout.levels[level].surfaces[place].mean_normal());
-        for (bin, sum) in sums[landing.set * count..][..count].iter().enumerate() {
-            let value = leaving(frame.from_local(self.bins.direction(bin, at)));
-            if value.is_finite() && !value.is_black() {
-                self.add(sum, value);
+        let per_quantum = self.per_quantum / COARSER;
+        let mut sums = self.glossy[level][place].lock().unwrap_or_else(PoisonError::into_inner);
+        if sums.is_empty() {
+            *sums = vec![[[0; LANES]; 3]; SETS * groups].into_boxed_slice();
+        }
+        let sums = &mut sums[landing.set * groups..][..groups];
+        let directions = self.corners.directions(&frame, at);
+        for (group, sums) in sums.iter_mut().enumerate() {
+            let values = leaving.towards(&directions.group(group));
+            for (sums, values) in sums.iter_mut().zip(&values) {
+                for i in 0..LANES {
+                    sums[i] = sums[i].wrapping_add(quanta(f64::from(values[i]) * per_quantum));
+                }
             }
         }
     }
 
     fn add(&self, sums: &[AtomicI64; 3], values: Rgb) {
         for (sum, value) in sums.iter().zip(values.0) {
+            let quanta = f64::from(value) * self.per_quantum;
             #[expect(clippy::cast_possible_truncation, reason = "quantised on purpose")]
-            sum.fetch_add((f64::from(value) * self.per_quantum).round() as i64, Ordering::Relaxed);
+            sum.fetch_add((quanta + 0.5_f64.copysign(quanta)) as i64, Ordering::Relaxed);
         }
     }
 
@@ -131,9 +158,9 @@ impl<'a> Accumulator<'a> {
         let sums =
             self.flux.iter().map(|level| level.len() * (size_of::<[[i64; 3]; SETS]>() + size_of::<u32>()));
         let glossy = self.glossy.iter().map(|level| {
-            let filled = level.iter().filter(|cell| cell.get().is_some()).count();
-            level.len() * size_of::<OnceLock<GlossySums>>()
-                + filled * self.bins.count() * size_of::<[[i64; 3]; SETS]>()
+            let groups = |cell: &Mutex<GlossySums>| cell.lock().unwrap_or_else(PoisonError::into_inner).len();
+            level.len() * size_of::<Mutex<GlossySums>>()
+                + level.iter().map(groups).sum::<usize>() * size_of::<[[i64; LANES]; 3]>()
         });
         sums.chain(glossy).sum()
     }
@@ -149,14 +176,25 @@ impl<'a> Accumulator<'a> {
                 })
                 .collect()
         });
-        let plain = |sums: GlossySums| -> Vec<[i64; 3]> {
-            sums.into_vec().into_iter().map(|sum| sum.map(AtomicI64::into_inner)).collect()
+        let count = self.bins.count();
+        let by_bin = |sums: &GlossySums| -> Vec<[i64; 3]> {
+            let sets = sums.chunks(sums.len() / SETS);
+            let bin = |set: &[[[i64; LANES]; 3]], bin: usize| set[bin / LANES].map(|sums| sums[bin % LANES]);
+            sets.flat_map(|set| (0..count).map(move |at| bin(set, at))).collect()
         };
         let glossy = self.glossy.into_iter().map(|level| {
             let cells = level.into_iter().enumerate();
-            cells.filter_map(|(place, cell)| Some((place, plain(cell.into_inner()?)))).collect()
+            let cells =
+                cells.map(|(place, cell)| (place, cell.into_inner().unwrap_or_else(PoisonError::into_inner)));
+            cells.filter(|(_, sums)| !sums.is_empty()).map(|(place, sums)| (place, by_bin(&sums))).collect()
         });
-        Sums { cells: levels.collect(), glossy: glossy.collect(), bins: self.bins, quantum: self.quantum }
+        Sums {
+            cells: levels.collect(),
+            glossy: glossy.collect(),
+            bins: self.bins,
+            quantum: self.quantum,
+            bin_quantum: self.quantum * COARSER,
+        }
     }
 }
 
@@ -168,8 +206,16 @@ pub(super) struct Sums {
     pub(super) glossy: Vec<BTreeMap<usize, Vec<[i64; 3]>>>,
     /// How the hemisphere is cut.
     pub(super) bins: DirectionBins,
-    /// Flux of one quantum.
+    /// Flux of one quantum of a cell, and of one quantum of a bin.
     pub(super) quantum: f64,
+    pub(super) bin_quantum: f64,
+}
+
+/// Rounds to an integer, in a way that becomes vector code; what is no number counts nothing.
+#[inline(always)]
+fn quanta(value: f64) -> i64 {
+    let value = if value.abs() < MOST_QUANTA { value } else { 0.0 };
+    (value + ROUNDER).to_bits().wrapping_sub(ROUNDER.to_bits()).cast_signed()
 }
 
 /// Light of one cell.
@@ -187,5 +233,20 @@ impl CellSum {
             *sum += flux;
         }
         self.count += other.count;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quanta_are_rounded_and_no_number_is_none() {
+        for value in [0.0, 0.4, 0.6, -0.4, -0.6, 1.5, 12_345.49, -9e9, 2.2e15, -2.2e15] {
+            assert_eq!(quanta(value), value.round_ties_even() as i64, "{value}");
+        }
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, MOST_QUANTA] {
+            assert_eq!(quanta(value), 0, "{value}");
+        }
     }
 }

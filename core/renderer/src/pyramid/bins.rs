@@ -20,6 +20,12 @@ pub struct DirectionBins {
     pub azimuth: u32,
 }
 
+/// Bins whose directions are asked together.
+pub(super) const LANES: usize = 16;
+
+/// A number for each of [`LANES`] bins, by axis or channel.
+pub type Lanes = [[f32; LANES]; 3];
+
 impl DirectionBins {
     /// Number of bins.
     #[must_use]
@@ -62,6 +68,69 @@ impl DirectionBins {
                 sum[c] += values[source][c];
             }
         }
+    }
+}
+
+/// The first corners of all bins, [`LANES`] together: what the directions of every photon start from.
+#[derive(Clone, Debug)]
+pub(super) struct BinCorners {
+    bins: DirectionBins,
+    /// Cosine of the angle to the normal, cosine and sine of the azimuth.
+    corners: Vec<Lanes>,
+}
+
+impl BinCorners {
+    pub(super) fn new(bins: DirectionBins) -> Self {
+        let mut corners = vec![[[0.0; LANES]; 3]; bins.count().div_ceil(LANES)];
+        for bin in 0..bins.count() {
+            let (ring, sector) = (bin as u32 / bins.azimuth, bin as u32 % bins.azimuth);
+            let (sin, cos) = (TAU * sector as f32 / bins.azimuth as f32).sin_cos();
+            let corner = [ring as f32 / bins.elevation as f32, cos, sin];
+            for (lanes, value) in corners[bin / LANES].iter_mut().zip(corner) {
+                lanes[bin % LANES] = value;
+            }
+        }
+        Self { bins, corners }
+    }
+
+    /// Groups of [`LANES`] bins, the last one padded.
+    pub(super) const fn groups(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// The directions at `at` in [0, 1)² of every bin, in the space of `frame`.
+    #[inline(always)]
+    pub(super) fn directions(&self, frame: &Frame, at: [f32; 2]) -> BinDirections<'_> {
+        let turn = (TAU * at[1] / self.bins.azimuth as f32).sin_cos();
+        BinDirections { corners: &self.corners, frame: *frame, up: at[0] / self.bins.elevation as f32, turn }
+    }
+}
+
+/// [`DirectionBins::direction`] of all bins at the same place in each, turned into a cell's frame.
+pub(super) struct BinDirections<'a> {
+    corners: &'a [Lanes],
+    frame: Frame,
+    up: f32,
+    turn: (f32, f32),
+}
+
+impl BinDirections<'_> {
+    /// Of one group of [`LANES`] bins.
+    #[inline(always)]
+    pub(super) fn group(&self, group: usize) -> Lanes {
+        let [corner_z, corner_cos, corner_sin] = &self.corners[group];
+        let (Frame { tangent, bitangent, normal }, (sin, cos)) = (self.frame, self.turn);
+        let mut directions = [[0.0; LANES]; 3];
+        for i in 0..LANES {
+            let z = corner_z[i] + self.up;
+            let r = (1.0 - z * z).abs().sqrt();
+            let x = r * (corner_cos[i] * cos - corner_sin[i] * sin);
+            let y = r * (corner_sin[i] * cos + corner_cos[i] * sin);
+            directions[0][i] = tangent.x * x + bitangent.x * y + normal.x * z;
+            directions[1][i] = tangent.y * x + bitangent.y * y + normal.y * z;
+            directions[2][i] = tangent.z * x + bitangent.z * y + normal.z * z;
+        }
+        directions
     }
 }
 
@@ -135,6 +204,25 @@ mod tests {
             counts[BINS.bin(Vec3::new(r * cos, r * sin, z), [0.0, 0.0])] += 1;
         }
         assert!(counts.iter().all(|&c| (380..=420).contains(&c)), "{counts:?}");
+    }
+
+    #[test]
+    fn directions_of_a_group_are_those_of_its_bins() {
+        let frame = Frame::new(Vec3::new(0.48, -0.6, 0.64));
+        for (elevation, azimuth) in [(8, 16), (2, 4), (3, 7), (1, 1)] {
+            let bins = DirectionBins { elevation, azimuth };
+            let corners = BinCorners::new(bins);
+            assert_eq!(corners.groups(), bins.count().div_ceil(LANES));
+            for at in [[0.0, 0.0], [0.3, 0.9], [0.999, 0.001]] {
+                let directions = corners.directions(&frame, at);
+                for bin in 0..bins.count() {
+                    let group = directions.group(bin / LANES);
+                    let direction = Vec3::from(group.map(|axis| axis[bin % LANES]));
+                    let expected = frame.from_local(bins.direction(bin, at));
+                    assert!((direction - expected).length() < 2e-6, "bin {bin}: {direction}, {expected}");
+                }
+            }
+        }
     }
 
     #[test]

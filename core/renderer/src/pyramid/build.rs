@@ -40,18 +40,27 @@ impl Pyramid {
             if !keep_going() {
                 return None;
             }
-            let glossy = push_bins(layout, number, &sums, &mut store);
             let parents = levels.last();
+            let parent = |place: usize| -> Option<[&Cell; SETS]> {
+                let parents = parents?;
+                let (cell, class) = layout.levels[number].keys[place].cell(&layout.grid.levels[number]);
+                let at = parents.index.find(layout.grid.parent(number, cell)?, class)?;
+                Some(std::array::from_fn(|set| &parents.cells[set][at]))
+            };
+            // Where the parent's light is read.
+            let read_above = |place: usize| {
+                parent(place).filter(|[parent, _]| reads_parent(parent, layout, number, place))
+            };
+            let glossy = push_bins(layout, number, &sums, &mut store, |place| read_above(place).is_none());
             let settle = |place: usize| -> [Cell; SETS] {
-                let parent = parents.and_then(|parents| {
-                    let (cell, class) = layout.levels[number].keys[place].cell(&layout.grid.levels[number]);
-                    parents.index.find(layout.grid.parent(number, cell)?, class)
-                });
                 let enough = sums.cells[number][place].count >= enough;
+                let parent = read_above(place);
                 std::array::from_fn(|set| {
-                    let own = own_cell(layout, number, place, &sums, set, glossy.get(&place).copied());
-                    let parent = parents.zip(parent).map(|(parents, place)| &parents.cells[set][place]);
-                    settle(layout, number, place, own.with(enough, mixed[place]), parent)
+                    let cell = match parent {
+                        Some(parent) => Cell::new(parent[set].irradiance(), parent[set].glossy()),
+                        None => own_cell(layout, number, place, &sums, set, glossy.get(&place).copied()),
+                    };
+                    cell.with(enough, mixed[place])
                 })
             };
             let values: Vec<[Cell; SETS]> =
@@ -78,28 +87,29 @@ fn own_cell(
     Cell::new(Rgb(flux.map(|flux| (flux as f64 * sums.quantum / area) as f32)), glossy)
 }
 
-/// A cell as it will be read: its own values, or its parent's where the photons are too few to tell, or the cell is a
-/// sliver of something that is no mixture.
-fn settle(layout: &Layout, number: usize, place: usize, own: Cell, parent: Option<&Cell>) -> Cell {
+/// Whether a cell's parent is read in its place: where the photons are too few to tell, or the cell is a sliver of
+/// something that is no mixture.
+fn reads_parent(parent: &Cell, layout: &Layout, number: usize, place: usize) -> bool {
     let area = layout.levels[number].surfaces[place].area as f64 * layout.area_unit;
     let sliver = area < SLIVER * f64::from(layout.grid.levels[number].cell_size).powi(2);
-    match parent {
-        Some(parent) if !parent.holds_enough() || (sliver && !parent.is_mixed()) => {
-            Cell::new(parent.irradiance(), parent.glossy()).with(own.holds_enough(), own.is_mixed())
-        }
-        _ => own,
-    }
+    !parent.holds_enough() || (sliver && !parent.is_mixed())
 }
 
-/// Puts the bins of a level's glossy cells into the store; gives their numbers by place.
-fn push_bins(layout: &Layout, number: usize, sums: &Sums, store: &mut BinStore) -> BTreeMap<usize, u32> {
+/// Puts the bins of a level's glossy cells into the store, of those that are read; gives their numbers by place.
+fn push_bins(
+    layout: &Layout,
+    number: usize,
+    sums: &Sums,
+    store: &mut BinStore,
+    is_read: impl Fn(usize) -> bool,
+) -> BTreeMap<usize, u32> {
     let surfaces = &layout.levels[number].surfaces;
-    let cells = sums.glossy.get(number).into_iter().flatten();
+    let cells = sums.glossy.get(number).into_iter().flatten().filter(|(place, _)| is_read(**place));
     cells
         .map(|(&place, bins)| {
             let area = surfaces[place].glossy_area.max(1) as f64 * layout.area_unit;
             let sets = std::array::from_fn(|set| &bins[set * sums.bins.count()..][..sums.bins.count()]);
-            (place, store.push(surfaces[place].mean_normal(), sets, sums.quantum / area))
+            (place, store.push(surfaces[place].mean_normal(), sets, sums.bin_quantum / area))
         })
         .collect()
 }
@@ -133,7 +143,7 @@ fn merge(layout: &Layout, sums: &mut Sums) {
 fn keep_lit(layout: &Layout, number: usize, sums: &[CellSum], values: &[[Cell; SETS]]) -> Level {
     let places: Vec<usize> = (0..values.len()).filter(|&place| sums[place].count > 0).collect();
     let keys = places.iter().map(|&place| -> CellKey { layout.levels[number].keys[place] });
-    let index = LevelIndex::new(&layout.grid.levels[number], layout.classes.count(), keys);
+    let index = LevelIndex::new(&layout.grid.levels[number], keys);
     let cells = std::array::from_fn(|set| places.iter().map(|&place| values[place][set]).collect());
     Level { index, cells }
 }

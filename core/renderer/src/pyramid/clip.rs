@@ -30,18 +30,19 @@ pub(super) fn clip_triangle(grid: &Grid, corners: [DVec3; 3], add: &mut impl FnM
         let cell_size = cell_size(grid, level);
         let (first, last) = ((low / cell_size).floor().as_ivec3(), (high / cell_size).floor().as_ivec3());
         if first == last && grid.levels[level].within(first).is_some() {
-            return descend(grid, level, first, polygon, add);
+            return descend(grid, level, first, &polygon, add);
         }
     }
     let cell_size = cell_size(grid, 0);
     let (first, last) = ((low / cell_size).floor().as_ivec3(), (high / cell_size).floor().as_ivec3());
     for z in first.z..=last.z {
-        let slab = cut_range(&polygon, 2, f64::from(z) * cell_size, f64::from(z + 1) * cell_size);
+        let slab = cut_range(polygon.clone(), 2, f64::from(z) * cell_size, f64::from(z + 1) * cell_size);
         for y in first.y..=last.y {
-            let column = cut_range(&slab, 1, f64::from(y) * cell_size, f64::from(y + 1) * cell_size);
+            let column = cut_range(slab.clone(), 1, f64::from(y) * cell_size, f64::from(y + 1) * cell_size);
             for x in first.x..=last.x {
-                let part = cut_range(&column, 0, f64::from(x) * cell_size, f64::from(x + 1) * cell_size);
-                descend(grid, 0, IVec3::new(x, y, z), part, add);
+                let part =
+                    cut_range(column.clone(), 0, f64::from(x) * cell_size, f64::from(x + 1) * cell_size);
+                descend(grid, 0, IVec3::new(x, y, z), &part, add);
             }
         }
     }
@@ -55,7 +56,7 @@ fn descend(
     grid: &Grid,
     level: usize,
     lattice: IVec3,
-    polygon: Polygon,
+    polygon: &Polygon,
     add: &mut impl FnMut(usize, IVec3, Part<'_>),
 ) {
     if polygon.len() < 3 {
@@ -63,42 +64,59 @@ fn descend(
     }
     let Some(cell) = grid.levels[level].within(lattice) else { return };
     let finer = grid.levels.get(level + 1).is_some_and(|finer| finer.within(lattice << 1_i32).is_some());
-    if !finer {
-        let part = measure(&polygon);
-        if part.area > 0.0 {
-            add(level, cell, part);
-        }
-        return;
+    if finer {
+        return halve(grid, level + 1, lattice << 1_i32, 0, polygon, add);
     }
-    let first_child: IVec3 = lattice << 1;
-    let middle = (first_child + IVec3::ONE).as_dvec3() * cell_size(grid, level + 1);
-    let mut parts: ArrayVec<(IVec3, Polygon), 8> = ArrayVec::new();
-    parts.push((first_child, polygon));
-    for axis in 0..3 {
-        for (child, polygon) in std::mem::take(&mut parts) {
-            let [below, above] = cut(&polygon, axis, middle[axis]);
-            parts.push((child, below));
-            let mut upper = child;
-            upper[axis] += 1;
-            parts.push((upper, above));
-        }
-        parts.retain(|(_, polygon)| polygon.len() >= 3);
-    }
-    for (child, polygon) in parts {
-        descend(grid, level + 1, child, polygon, add);
+    let part = measure(polygon);
+    if part.area > 0.0 {
+        add(level, cell, part);
     }
 }
 
-/// The parts below and above a plane across `axis`. What lies in the plane belongs above, as `floor` has it.
-fn cut(polygon: &Polygon, axis: usize, plane: f64) -> [Polygon; 2] {
+/// Cuts a polygon in the middle of a coarser cell, across one axis after the other; `child` is the lowest of the cells
+/// that are still possible. What is not cut is not copied.
+fn halve(
+    grid: &Grid,
+    level: usize,
+    child: IVec3,
+    axis: usize,
+    polygon: &Polygon,
+    add: &mut impl FnMut(usize, IVec3, Part<'_>),
+) {
+    if axis == 3 {
+        return descend(grid, level, child, polygon, add);
+    }
+    let mut upper = child;
+    upper[axis] += 1;
+    match cut(polygon, axis, f64::from(upper[axis]) * cell_size(grid, level)) {
+        Cut::Below => halve(grid, level, child, axis + 1, polygon, add),
+        Cut::Above => halve(grid, level, upper, axis + 1, polygon, add),
+        Cut::Both([below, above]) => {
+            halve(grid, level, child, axis + 1, &below, add);
+            halve(grid, level, upper, axis + 1, &above, add);
+        }
+    }
+}
+
+/// Where a polygon lies of a plane.
+#[expect(clippy::large_enum_variant, reason = "never kept, only taken apart")]
+enum Cut {
+    Below,
+    Above,
+    /// The parts below and above.
+    Both([Polygon; 2]),
+}
+
+/// Cuts a polygon by a plane across `axis`. What lies in the plane belongs above, as `floor` has it.
+fn cut(polygon: &Polygon, axis: usize, plane: f64) -> Cut {
     let (low, high) = polygon
         .iter()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
     if low >= plane {
-        return [Polygon::new(), polygon.clone()];
+        return Cut::Above;
     }
     if high <= plane {
-        return [polygon.clone(), Polygon::new()];
+        return Cut::Below;
     }
     let mut parts = [Polygon::new(), Polygon::new()];
     for (i, &a) in polygon.iter().enumerate() {
@@ -117,13 +135,21 @@ fn cut(polygon: &Polygon, axis: usize, plane: f64) -> [Polygon; 2] {
             parts[1].push(p);
         }
     }
-    parts
+    Cut::Both(parts)
 }
 
-fn cut_range(polygon: &Polygon, axis: usize, low: f64, high: f64) -> Polygon {
-    let [_, above] = cut(polygon, axis, low);
-    let [within, _] = cut(&above, axis, high);
-    within
+/// The part between two planes.
+fn cut_range(polygon: Polygon, axis: usize, low: f64, high: f64) -> Polygon {
+    let above = match cut(&polygon, axis, low) {
+        Cut::Below => return Polygon::new(),
+        Cut::Above => polygon,
+        Cut::Both([_, above]) => above,
+    };
+    match cut(&above, axis, high) {
+        Cut::Below => above,
+        Cut::Above => Polygon::new(),
+        Cut::Both([below, _]) => below,
+    }
 }
 
 fn extent(polygon: &Polygon) -> (DVec3, DVec3) {

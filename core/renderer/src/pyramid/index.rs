@@ -1,25 +1,28 @@
-//! From a cell to its place in a packed array: one brick of 4³ cells, one 64-bit mask per normal class, one popcount.
+//! From a cell to its place in a packed array: one brick of 4³ cells, one 64-bit mask per normal class that the brick
+//! knows, two popcounts.
 
 use glam::IVec3;
 
 use super::grid::{BRICK, LevelBox};
 
-/// Which cells of one class of a brick exist, and where the first of them lies.
+/// A brick is a run of these in memory. The first tells which classes the brick knows, one bit each; one for each of them
+/// follows, in order: which of its cells exist, and the place of the first.
 #[derive(Clone, Copy, Debug, Default)]
-struct ClassMask {
-    mask: u64,
-    base: u32,
+struct Slot([u64; 2]);
+
+impl Slot {
+    const fn classes(self) -> u128 {
+        (self.0[1] as u128) << 64 | self.0[0] as u128
+    }
 }
 
 /// The cells of one level that exist.
 #[derive(Clone, Debug)]
 pub struct LevelIndex {
-    /// Brick of every 4³ block of the level's box, [`NO_BRICK`] where there is none.
+    /// Slot of the brick of every 4³ block of the level's box, [`NO_BRICK`] where there is none.
     bricks: Vec<u32>,
-    /// One mask per normal class for each brick.
-    masks: Vec<ClassMask>,
+    slots: Vec<Slot>,
     size: IVec3,
-    classes: usize,
     len: usize,
 }
 
@@ -63,26 +66,29 @@ impl LevelIndex {
     /// Index of the cells named by `keys`, which are sorted and unique. Cell `i` of the keys has place `i`.
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "fewer than 2^32 cells fit in memory")]
-    pub fn new(level: &LevelBox, classes: usize, keys: impl Iterator<Item = CellKey>) -> Self {
+    pub fn new(level: &LevelBox, keys: impl Iterator<Item = CellKey>) -> Self {
         let size = level.size / BRICK;
         let mut bricks = vec![NO_BRICK; size.element_product() as usize];
-        let mut masks: Vec<ClassMask> = Vec::new();
+        let mut slots: Vec<Slot> = Vec::new();
         let mut len = 0;
         for key in keys {
             let (brick, class, bit) =
                 ((key.0 >> 16) as usize, (key.0 >> 8) as usize & 0xff, key.0 as u32 & 0x3f);
             if bricks[brick] == NO_BRICK {
-                bricks[brick] = (masks.len() / classes) as u32;
-                masks.extend(std::iter::repeat_n(ClassMask::default(), classes));
+                bricks[brick] = slots.len() as u32;
+                slots.push(Slot::default());
             }
-            let entry = &mut masks[bricks[brick] as usize * classes + class];
-            if entry.mask == 0 {
-                entry.base = len as u32;
+            let head = &mut slots[bricks[brick] as usize];
+            if head.classes() >> class & 1 == 0 {
+                head.0[class / 64] |= 1 << (class % 64);
+                slots.push(Slot([0, len as u64]));
             }
-            entry.mask |= 1 << bit;
+            if let Some(Slot([mask, _])) = slots.last_mut() {
+                *mask |= 1 << bit;
+            }
             len += 1;
         }
-        Self { bricks, masks, size, classes, len }
+        Self { bricks, slots, size, len }
     }
 
     /// Number of cells.
@@ -104,9 +110,14 @@ impl LevelIndex {
         if brick == NO_BRICK {
             return None;
         }
-        let entry = self.masks[brick as usize * self.classes + class];
-        let below = entry.mask & ((1 << bit) - 1);
-        (entry.mask >> bit & 1 == 1).then(|| (entry.base + below.count_ones()) as usize)
+        let classes = self.slots[brick as usize].classes();
+        if classes >> class & 1 == 0 {
+            return None;
+        }
+        let rank = (classes & ((1 << class) - 1)).count_ones();
+        let Slot([mask, first]) = self.slots[(brick + 1 + rank) as usize];
+        let below = mask & ((1 << bit) - 1);
+        (mask >> bit & 1 == 1).then(|| first as usize + below.count_ones() as usize)
     }
 
     /// Place of a cell (within the level's box), `None` where it does not exist.
@@ -120,7 +131,7 @@ impl LevelIndex {
     /// Memory (bytes).
     #[must_use]
     pub const fn bytes(&self) -> usize {
-        self.bricks.len() * size_of::<u32>() + self.masks.len() * size_of::<ClassMask>()
+        self.bricks.len() * size_of::<u32>() + self.slots.len() * size_of::<Slot>()
     }
 }
 
@@ -130,6 +141,8 @@ mod tests {
     use crate::pyramid::grid::Grid;
     use glam::DVec3;
     use std::collections::BTreeSet;
+
+    const CLASSES: i32 = 108;
 
     #[test]
     fn every_cell_is_found_where_its_key_says() {
@@ -142,9 +155,9 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             let r = |shift: u64, n: i32| ((state >> shift) % n as u64) as i32;
             let cell = IVec3::new(r(10, level.size.x), r(25, level.size.y), r(40, level.size.z));
-            keys.insert(CellKey::new(&level, cell, r(50, 6) as usize));
+            keys.insert(CellKey::new(&level, cell, r(50, CLASSES) as usize));
         }
-        let index = LevelIndex::new(&level, 6, keys.iter().copied());
+        let index = LevelIndex::new(&level, keys.iter().copied());
         assert_eq!(index.len(), keys.len());
         for (place, key) in keys.iter().enumerate() {
             let (cell, class) = key.cell(&level);
@@ -152,7 +165,7 @@ mod tests {
             assert_eq!(index.find(cell, class), Some(place));
         }
         for z in 0..level.size.z {
-            for class in 0..6 {
+            for class in 0..CLASSES as usize {
                 let cell = IVec3::new(3, 5, z);
                 let exists = keys.contains(&CellKey::new(&level, cell, class));
                 assert_eq!(index.find(cell, class).is_some(), exists);

@@ -5,9 +5,9 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::class::NormalClasses;
-use super::clip::{Part, clip_triangle};
 use super::grid::Grid;
 use super::index::{CellKey, LevelIndex};
+use super::measure::{Cells, Measure};
 use crate::math::Side;
 
 /// One triangle as the pyramid sees it.
@@ -46,7 +46,7 @@ pub struct CellSurface {
 }
 
 impl CellSurface {
-    fn add(&mut self, other: &Self) {
+    pub(super) fn add(&mut self, other: &Self) {
         self.area += other.area;
         for c in 0..3 {
             self.normal[c] += other.normal[c];
@@ -128,17 +128,11 @@ pub struct Layout {
 /// Area unit: sums over the whole scene stay exact in 63 bits, and a 10⁻¹² part of the scene still counts.
 const AREA_BITS: i32 = 48;
 
-/// Surface that light can reach, and surface that is hidden.
-type Cells = FxHashMap<(u32, CellKey), [CellSurface; 2]>;
-
-/// Parts of a triangle below this share of a cell's face are open or hidden as a whole.
-const SMALL_PART: f64 = 0.1;
-
 /// Where less than this part of a cell's surface is open, all of it counts: what little light there is has to land.
 const LEAST_OPEN: i64 = 8;
 
 impl Layout {
-    /// Measures `count` triangles, given by index. `open` tells whether light can come to a point on the side of a surface:
+    /// Measures `count` triangles, given by index. `open` tells of points on sides of surfaces whether light can come to them:
     /// hidden surface, such as the floor under a box, is left out beside open one. `None` once `keep_going` says no.
     #[must_use]
     pub fn new(
@@ -146,30 +140,14 @@ impl Layout {
         classes: NormalClasses,
         count: usize,
         triangle: impl Fn(usize) -> SurfaceTriangle + Sync,
-        open: impl Fn(&SidePoint) -> bool + Sync,
+        open: impl Fn(&[SidePoint]) -> Vec<bool> + Sync,
         keep_going: impl Fn() -> bool + Sync,
     ) -> Option<Self> {
-        let total: f64 = (0..count).into_par_iter().map(|i| quantized_area(triangle(i).corners)).sum();
+        let areas: Vec<f64> =
+            (0..count).into_par_iter().map(|i| quantized_area(triangle(i).corners)).collect();
+        let total: f64 = areas.iter().sum();
         let area_unit = (total.max(f64::MIN_POSITIVE).log2().ceil() - f64::from(AREA_BITS)).exp2();
-        let add = |mut cells: Cells, i: usize| {
-            let mut add = |level: usize, cell: IVec3, class: usize, surfaces: [CellSurface; 2]| {
-                let key = CellKey::new(&grid.levels[level], cell, class);
-                add_surfaces(cells.entry((level as u32, key)).or_default(), &surfaces);
-            };
-            measure(&grid, classes, area_unit, &triangle(i), &open, &mut add);
-            keep_going().then_some(cells)
-        };
-        let merge = |mut a: Cells, mut b: Cells| {
-            if a.len() < b.len() {
-                std::mem::swap(&mut a, &mut b);
-            }
-            for (key, surfaces) in b {
-                add_surfaces(a.entry(key).or_default(), &surfaces);
-            }
-            keep_going().then_some(a)
-        };
-        let cells =
-            (0..count).into_par_iter().try_fold(Cells::default, add).try_reduce(Cells::default, merge)?;
+        let cells = Measure { grid: &grid, classes, area_unit, open }.cells(&areas, triangle, keep_going)?;
         let levels = levels(&grid, classes, cells);
         Some(Self { grid, classes, levels, area_unit })
     }
@@ -233,63 +211,6 @@ fn quantized_area(corners: [DVec3; 3]) -> f64 {
     (area * 2.0_f64.powi(AREA_BITS)).round() * 2.0_f64.powi(-AREA_BITS)
 }
 
-fn add_surfaces(sums: &mut [CellSurface; 2], surfaces: &[CellSurface; 2]) {
-    for (sum, surface) in sums.iter_mut().zip(surfaces) {
-        sum.add(surface);
-    }
-}
-
-fn measure(
-    grid: &Grid,
-    classes: NormalClasses,
-    area_unit: f64,
-    triangle: &SurfaceTriangle,
-    open: &impl Fn(&SidePoint) -> bool,
-    add: &mut impl FnMut(usize, IVec3, usize, [CellSurface; 2]),
-) {
-    let sides = Side::both(triangle.normal);
-    clip_triangle(grid, triangle.corners, &mut |level, cell, part| {
-        for side in sides {
-            let cell_size = grid.levels[level].cell_size;
-            let is_open =
-                |offset: DVec3| open(&SidePoint { p: grid.position(offset.as_vec3()), side, cell_size });
-            let share = open_share(&part, f64::from(cell_size), is_open);
-            let surface = |share: f64| part_surface(&part, side.normal, share / area_unit, triangle.glossy);
-            let surfaces = [surface(share), surface(1.0 - share)];
-            if surfaces.iter().any(|surface| surface.area > 0) {
-                add(level, cell, classes.of(side), surfaces);
-            }
-        }
-    });
-}
-
-/// Share of a part that is open: of small parts all or nothing, of large ones by the triangles around their center.
-fn open_share(part: &Part<'_>, cell_size: f64, is_open: impl Fn(DVec3) -> bool) -> f64 {
-    if part.area < SMALL_PART * cell_size * cell_size {
-        return f64::from(u8::from(is_open(part.centroid)));
-    }
-    let corners = part.corners;
-    let around = (0..corners.len()).map(|i| {
-        let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
-        let area = 0.5 * (a - part.centroid).cross(b - part.centroid).length();
-        if is_open((a + b + part.centroid) / 3.0) { area } else { 0.0 }
-    });
-    (around.sum::<f64>() / part.area).min(1.0)
-}
-
-/// A part of a triangle in `units` area units per square scene unit.
-#[expect(clippy::cast_possible_truncation, reason = "quantised on purpose")]
-fn part_surface(part: &Part<'_>, normal: Vec3, units: f64, glossy: bool) -> CellSurface {
-    let units = part.area * units;
-    let area = units.round() as i64;
-    CellSurface {
-        area,
-        normal: (normal.as_dvec3() * units).to_array().map(|c| c.round() as i64),
-        centroid: (part.centroid * units).to_array().map(|c| c.round() as i64),
-        glossy_area: if glossy { area } else { 0 },
-    }
-}
-
 /// Hides the surface where two flat fronts of a cell lie on each other, such as a box's bottom and the floor.
 fn hide_contacts(grid: &Grid, classes: NormalClasses, cells: &mut Cells) {
     let contact = |(&(level, key), [front, _]): (&(u32, CellKey), &[CellSurface; 2])| {
@@ -343,7 +264,7 @@ fn levels(grid: &Grid, classes: NormalClasses, cells: Cells) -> Vec<LevelLayout>
             let mut cells: Vec<_> = cells.into_iter().collect();
             cells.par_sort_unstable_by_key(|(key, _)| *key);
             let (keys, surfaces): (Vec<_>, Vec<_>) = cells.into_iter().unzip();
-            let index = LevelIndex::new(level, classes.count(), keys.iter().copied());
+            let index = LevelIndex::new(level, keys.iter().copied());
             LevelLayout { index, keys, surfaces }
         })
         .collect()
@@ -370,7 +291,7 @@ mod tests {
             normal: normal(triangles[i]),
             glossy: i == 1,
         };
-        let open = |_: &SidePoint| true;
+        let open = |points: &[SidePoint]| vec![true; points.len()];
         let layout = Layout::new(grid, NormalClasses::Six, triangles.len(), triangle, open, || true).unwrap();
         let exact: f64 = triangles.iter().map(|[a, b, c]| (b - a).cross(c - a).length()).sum();
         for (level, cells) in layout.levels.iter().enumerate().take(1) {
@@ -398,6 +319,7 @@ mod tests {
         let half = DVec3::splat(0.2);
         let grid = Grid::new([-half, half], [-half, half], 1, DVec3::ZERO);
         let area = |open: &(dyn Fn(&SidePoint) -> bool + Sync), side: Side| {
+            let open = |points: &[SidePoint]| points.iter().map(open).collect();
             let layout = Layout::new(grid.clone(), NormalClasses::Six, 4, triangle, open, || true).unwrap();
             let (level, place) = layout.find(p(2.0, 2.0).as_vec3(), layout.classes.of(side)).unwrap();
             layout.levels[level].surfaces[place].area as f64 * layout.area_unit / 0.05_f64.powi(2)

@@ -5,7 +5,7 @@
 //! halves the cells.
 //!
 //! ```text
-//!   Layout       surfaces -> which cells exist, their area     (clip, index)
+//!   Layout       surfaces -> which cells exist, their area     (measure, clip, index)
 //!   Accumulator  photons  -> flux and count of each cell       (exact integer sums)
 //!   Pyramid      merge    -> irradiance of each cell, read by  lookup(point, class, footprint)
 //! ```
@@ -24,12 +24,13 @@ mod grid;
 mod index;
 mod layout;
 mod lookup;
+mod measure;
 mod mixed;
 
 use glam::{IVec3, Vec3};
 
-pub use accumulator::{Accumulator, Landing, SETS};
-pub use bins::DirectionBins;
+pub use accumulator::{Accumulator, Landing, Leaving, SETS};
+pub use bins::{DirectionBins, Lanes};
 pub use class::NormalClasses;
 pub use grid::Grid;
 pub use layout::{Layout, SidePoint, SurfaceTriangle};

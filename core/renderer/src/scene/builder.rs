@@ -376,6 +376,7 @@ fn place_lamp(record: LampRecord, space: &SceneSpace, problems: &mut Problems) -
         x_axis: x.as_vec3(),
         y_axis: y.as_vec3(),
         axis: -z.as_vec3(),
+        stretch: [scales.x, scales.y].map(|length| (length / scales.z) as f32),
         visibility: record.visibility & visibility::ALL,
         casts_shadow: record.casts_shadow,
     })

@@ -145,6 +145,8 @@ pub struct Lamp {
     pub y_axis: Vec3,
     /// See `x_axis`.
     pub axis: Vec3,
+    /// Lengths of the object's x and y axes over that of its z axis: a spot's cone is stretched by them.
+    pub stretch: [f32; 2],
     /// Ray kinds that see the lamp's shape.
     pub visibility: u32,
     /// False: its light passes through everything.

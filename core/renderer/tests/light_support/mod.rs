@@ -24,6 +24,7 @@ pub(crate) fn lamp(shape: LampShape, power: f32, position: Vec3) -> Lamp {
         x_axis: Vec3::X,
         y_axis: Vec3::NEG_Y,
         axis: Vec3::NEG_Z,
+        stretch: [1.0, 1.0],
         visibility: visibility::ALL,
         casts_shadow: true,
     }
