@@ -38,7 +38,13 @@ class SceneBuilder:
 
     def __new__(cls) -> SceneBuilder: ...
     def add_material(self, record: dict[str, Any]) -> int:
-        """`{"name", "closures": [{"weight": [r, g, b], "closure": {"kind": ..., ...}}]}`."""
+        """`{"name", "closures": [{"weight": [r, g, b], "closure": {"kind": ..., ...}}], "program": {"instructions",
+        "outputs", "normal"}}`; without `program` every input is the constant in its closure."""
+
+    def add_texture(
+        self, name: str, pixels: npt.NDArray[np.uint8] | npt.NDArray[np.float32], encoding: str
+    ) -> int:
+        """pixels (height, width, 4), rows from the bottom, the color multiplied by alpha; encoding "srgb" or "linear"."""
 
     def add_mesh(
         self,
@@ -46,11 +52,11 @@ class SceneBuilder:
         positions: npt.NDArray[np.float32],
         triangles: npt.NDArray[np.uint32],
         corner_normals: npt.NDArray[np.float32] | None = None,
-        corner_uvs: npt.NDArray[np.float32] | None = None,
+        layers: list[tuple[int, npt.NDArray[np.float32]]] | None = None,
         slots: npt.NDArray[np.uint16] | None = None,
     ) -> int:
-        """positions (V, 3); triangles (T, 3); corner_normals (T, 3, 3), None for flat shading; corner_uvs (T, 3, 2);
-        slots (T,). Wrong shapes raise SceneError; bad values are dropped and reported as problems."""
+        """positions (V, 3); triangles (T, 3); corner_normals (T, 3, 3), None for flat shading; layers are the number of an
+        attribute and its values (T, 3, 1 to 4); slots (T,). Wrong shapes raise SceneError; bad values are dropped and reported as problems."""
 
     def add_object(
         self,
@@ -61,6 +67,9 @@ class SceneBuilder:
         visibility: int,
     ) -> int:
         """world_from_object (4, 4), as Blender's matrix_world; `materials` one per slot (empty: Blender's default grey)."""
+
+    def set_object_info(self, index: int, record: dict[str, Any]) -> None:
+        """What materials may ask about an object: `{"color": [r, g, b, a], "index", "random"}`."""
 
     def add_lamp(self, record: dict[str, Any]) -> int: ...
     def set_camera(self, record: dict[str, Any]) -> None: ...

@@ -28,6 +28,13 @@ def multiply(a: Color, b: Color) -> Color:
     return (a[0] * b[0], a[1] * b[1], a[2] * b[2])
 
 
+def product(a: float | Color, b: float | Color) -> float | Color:
+    """Channel by channel; a number multiplies every channel."""
+    if isinstance(a, float):
+        return a * b if isinstance(b, float) else scale(b, a)
+    return scale(a, b) if isinstance(b, float) else multiply(a, b)
+
+
 def lerp(a: float, b: float, factor: float) -> float:
     """From a at 0 to b at 1."""
     return a + (b - a) * factor

@@ -1,10 +1,10 @@
-"""Shader nodes as weighted closures: Mix and Add Shader multiplied out, inputs folded to constants."""
+"""Shader nodes as weighted closures: Mix and Add Shader multiplied out, inputs constant or, for a compiler, varying."""
 
 from collections.abc import Callable
 from typing import Any
 
-from .arithmetic import BLACK, WHITE, Color, clamp, scale
-from .fold import Folder
+from .arithmetic import BLACK, WHITE, Color
+from .fold import Folder, Value, Varying
 from .nodes import Input, Output, origin
 
 Closure = dict[str, Any]
@@ -41,22 +41,47 @@ _LEFT_OUT = (
 _NORMALS = ("Normal", "Coat Normal", "Clear Coat Normal")
 
 
-def closures(folder: Folder, entry: Input, weight: float = 1.0) -> list[WeightedClosure]:
-    """The closures a shader input stands for, each with its share; empty for black."""
+def closures(folder: Folder, entry: Input) -> tuple[list[WeightedClosure], list[dict[str, Any]]]:
+    """The closures a shader input stands for, each with its share; empty for black. Inputs that vary hold a typical
+    value and are listed as the core's OutputRecords."""
+    outputs: list[dict[str, Any]] = []
+    records = []
+    for index, (share, closure) in enumerate(_parts(folder, entry, 1.0)):
+        record = {}
+        for name, value in (("weight", share), *closure.items()):
+            if isinstance(value, Varying):
+                outputs.append({"closure": index, "input": name, "register": value.register})
+                value = value.typical
+            record[name] = list(value) if isinstance(value, tuple) else value
+        weight = record.pop("weight")
+        records.append({"weight": weight if isinstance(weight, list) else [weight] * 3, "closure": record})
+    return records, outputs
+
+
+def _parts(folder: Folder, entry: Input, weight: float | Varying) -> list[tuple[Value | Varying, Closure]]:
     source = origin(entry)
-    if isinstance(source, Input) or source.b_node.mute or weight < _NEGLIGIBLE:
+    if isinstance(source, Input) or source.b_node.mute:
+        return []
+    if not isinstance(weight, Varying) and weight < _NEGLIGIBLE:
         return []
     kind = source.b_node.type
     if kind == "MIX_SHADER":
-        factor = clamp(folder.value(source.input("Fac")))
-        first = closures(folder, source.input("Shader"), weight * (1.0 - factor))
-        return first + closures(folder, source.input("Shader_001"), weight * factor)
+        factor = folder.unit(folder.value(source.input("Fac")))
+        first = _parts(folder, source.input("Shader"), _share(folder, weight, folder.complement(factor)))
+        return first + _parts(folder, source.input("Shader_001"), _share(folder, weight, factor))
     if kind == "ADD_SHADER":
-        first = closures(folder, source.input("Shader"), weight)
-        return first + closures(folder, source.input("Shader_001"), weight)
+        first = _parts(folder, source.input("Shader"), weight)
+        return first + _parts(folder, source.input("Shader_001"), weight)
     _report_left_out(folder, source)
     record, share = _closure(folder, source)
-    return [{"weight": list(scale(share, weight)), "closure": record}] if record else []
+    return [(folder.product(share, weight), record)] if record else []
+
+
+def _share(folder: Folder, weight: float | Varying, factor: float | Varying) -> float | Varying:
+    product = folder.product(weight, factor)
+    if isinstance(product, Varying | float):
+        return product
+    raise TypeError("a share is a number")
 
 
 def _closure(folder: Folder, source: Output) -> tuple[Closure | None, Color]:
@@ -73,26 +98,27 @@ def _closure(folder: Folder, source: Output) -> tuple[Closure | None, Color]:
         folder.report_node(b_node, "this shader is not supported; black is used instead")
         return None, BLACK
     folder.report_node(b_node, "this shader is not supported yet; Diffuse is used instead")
-    return {"kind": "diffuse", "color": list(folder.color(entry))}, WHITE
+    return {"kind": "diffuse", "color": folder.color(entry)}, WHITE
 
 
 def _report_left_out(folder: Folder, source: Output) -> None:
     """Inputs that would change the picture but are not rendered yet."""
     for identifier in _LEFT_OUT:
         entry = source.find(identifier)
-        if entry is not None and folder.value(entry) != 0.0:
+        if entry is not None and folder.constant_value(entry) != 0.0:
             folder.report_node(source.b_node, f"{identifier} is not supported yet; left out")
     for identifier in _NORMALS:
         entry = source.find(identifier)
-        if entry is not None and isinstance(origin(entry), Output):
-            message = f"{identifier} is not supported yet; the surface's own is used instead"
-            folder.report_node(source.b_node, message)
+        if entry is None or isinstance(origin(entry), Input) or folder.take_normal(entry):
+            continue
+        message = f"{identifier} is not supported yet; the surface's own is used instead"
+        folder.report_node(source.b_node, message)
 
 
 def _diffuse(folder: Folder, source: Output) -> Closure:
-    if folder.value(source.input("Roughness")) > 0.0:
+    if folder.constant_value(source.input("Roughness")) > 0.0:
         folder.report_node(source.b_node, "Roughness is not supported yet; left out")
-    return {"kind": "diffuse", "color": list(folder.color(source.input("Color")))}
+    return {"kind": "diffuse", "color": folder.color(source.input("Color"))}
 
 
 def _rough(kind: str, *more: str) -> Callable[[Folder, Output], Closure]:
@@ -100,29 +126,28 @@ def _rough(kind: str, *more: str) -> Callable[[Folder, Output], Closure]:
 
     def convert(folder: Folder, source: Output) -> Closure:
         numbers = {name.lower(): folder.value(source.input(name)) for name in more}
-        roughness = clamp(folder.value(source.input("Roughness")))
+        roughness = folder.unit(folder.value(source.input("Roughness")))
         distribution = getattr(source.b_node, "distribution", "MULTI_GGX")
         # Blender 4.1 and before had perfect mirrors as a distribution of their own.
         if distribution == "SHARP":
             roughness = 0.0
-        elif roughness > 0.0 and distribution in ("BECKMANN", "ASHIKHMIN_SHIRLEY"):
+        elif roughness != 0.0 and distribution in ("BECKMANN", "ASHIKHMIN_SHIRLEY"):
             folder.report_node(
                 source.b_node, f"the distribution {distribution} is not supported yet; GGX is used"
             )
-        color = list(folder.color(source.input("Color")))
+        color = folder.color(source.input("Color"))
         return {"kind": kind, "color": color, "roughness": roughness, **numbers}
 
     return convert
 
 
 def _transparent(folder: Folder, source: Output) -> Closure:
-    return {"kind": "transparent", "color": list(folder.color(source.input("Color")))}
+    return {"kind": "transparent", "color": folder.color(source.input("Color"))}
 
 
 def _emission(folder: Folder, source: Output) -> Closure:
     color = folder.color(source.input("Color"))
-    radiance = scale(color, folder.value(source.input("Strength")))
-    return {"kind": "emission", "radiance": list(radiance)}
+    return {"kind": "emission", "radiance": folder.product(color, folder.value(source.input("Strength")))}
 
 
 def _principled(folder: Folder, source: Output) -> Closure:
@@ -130,7 +155,7 @@ def _principled(folder: Folder, source: Output) -> Closure:
     for identifier, is_color in _PRINCIPLED:
         entry = source.input(identifier)
         name = identifier.lower().replace(" ", "_")
-        record[name] = list(folder.color(entry)) if is_color else folder.value(entry)
+        record[name] = folder.color(entry) if is_color else folder.value(entry)
     return record
 
 
@@ -140,8 +165,8 @@ def _metallic(folder: Folder, source: Output) -> Closure:
     return {
         "kind": "principled",
         "metallic": 1.0,
-        "base_color": list(folder.color(source.input("Base Color"))),
-        "specular_tint": list(folder.color(source.input("Edge Tint"))),
+        "base_color": folder.color(source.input("Base Color")),
+        "specular_tint": folder.color(source.input("Edge Tint")),
         "roughness": folder.value(source.input("Roughness")),
     }
 

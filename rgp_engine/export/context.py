@@ -24,13 +24,26 @@ class ExportContext:
     b_depsgraph: Any
     builder: "rgp_core.SceneBuilder"
     log: ProblemLog
-    meshes: dict[int, int | None] = field(default_factory=dict)
-    """Index in the builder of each evaluated mesh, by its address; None for those without triangles."""
+    meshes: dict[tuple[int, frozenset[str]], int | None] = field(default_factory=dict)
+    """Index in the builder of each evaluated mesh, by its address and the layers that are read; None for those
+    without triangles."""
     materials: dict[int | None, int] = field(default_factory=dict)
     """Index in the builder of each evaluated material, by its address; None is no material."""
+    textures: dict[str, int | None] = field(default_factory=dict)
+    """Index in the builder of each image, by its full name; None for those that cannot be read."""
+    layers_read: dict[int, frozenset[str]] = field(default_factory=dict)
+    """Layers of the mesh that each material reads, by its index in the builder."""
+    asking_objects: set[int] = field(default_factory=set)
+    """Materials that ask about their object, by index in the builder."""
+    attributes: dict[str, int] = field(default_factory=dict)
+    """The core's number of each layer's name."""
     emits: bool = False
     """True once anything in the scene can give light."""
     _next_tick: float = 0.0
+
+    def attribute_number(self, name: str) -> int:
+        """The core's number of a layer: "uv", "uv:NAME", "color", "attribute:NAME" or "generated"."""
+        return self.attributes.setdefault(name, len(self.attributes))
 
     def tick(self, doing: str) -> None:
         """To be called in every long loop: shows what is exported, raises Cancelled after Esc."""

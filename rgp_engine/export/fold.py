@@ -4,7 +4,7 @@ What cannot be computed is reported once per material and node, with the value t
 """
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..report import ProblemLog
 from . import arithmetic
@@ -16,6 +16,20 @@ from .texture import texture_average
 Value = float | Color
 
 
+class Varying(NamedTuple):
+    """What differs from point to point."""
+
+    register: int
+    """The result of the material's program that computes it."""
+    typical: Value
+    """A value that stands for it where one is asked for."""
+
+    @property
+    def number(self) -> float:
+        """The typical value of a number."""
+        return self.typical if isinstance(self.typical, float) else self.typical[0]
+
+
 class UnfoldableError(Exception):
     """A node whose result no constant can stand for."""
 
@@ -23,17 +37,51 @@ class UnfoldableError(Exception):
 class Folder:
     """Folds the inputs of one material's, lamp's or world's nodes."""
 
-    def __init__(self, subject: str, log: ProblemLog) -> None:
+    def __init__(self, subject: str, log: ProblemLog | None = None) -> None:
+        """Without `log` nothing is reported."""
         self._subject = subject
-        self._log = log
+        self._log = ProblemLog() if log is None else log
 
-    def color(self, entry: Input) -> Color:
+    def constant_color(self, entry: Input) -> Color:
         """Constant an input stands for, as a color or vector."""
         return as_color(self.fold(entry))
 
-    def value(self, entry: Input) -> float:
+    def constant_value(self, entry: Input) -> float:
         """Constant an input stands for, as a number."""
         return as_number(self.fold(entry), entry.b_socket.type)
+
+    def color(self, entry: Input) -> Color | Varying:
+        """The color of an input, for those that can use what varies; here it is a constant."""
+        return self.constant_color(entry)
+
+    def value(self, entry: Input) -> float | Varying:
+        """As `color`, for a number."""
+        return self.constant_value(entry)
+
+    def product(self, a: Value | Varying, b: Value | Varying) -> Value | Varying:
+        """Channel by channel."""
+        if isinstance(a, Varying) or isinstance(b, Varying):
+            raise TypeError("only a compiler multiplies what varies")
+        return arithmetic.product(a, b)
+
+    def complement(self, a: float | Varying) -> float | Varying:
+        """1 - a."""
+        return 1.0 - _constant(a)
+
+    def unit(self, a: float | Varying) -> float | Varying:
+        """Clamped to 0 and 1."""
+        return clamp(_constant(a))
+
+    def take_normal(self, _entry: Input) -> bool:
+        """Makes what feeds an input the shading normal; False where that is not possible."""
+        return False
+
+    def typical(self, source: Output) -> Value:
+        """A value that stands for a node's output."""
+        try:
+            return self._node(source)
+        except UnfoldableError:
+            return _default(source.b_socket)
 
     def report(self, message: str) -> None:
         """Adds a problem of the material, lamp or world."""
@@ -41,15 +89,15 @@ class Folder:
 
     def report_node(self, b_node: Any, message: str) -> None:
         """Adds a problem that names the node."""
-        self.report(f'node "{_title(b_node)}": {message}')
+        self.report(f'node "{title(b_node)}": {message}')
 
     def fold(self, entry: Input) -> Value:
         """Constant an input stands for; its own default where the node before it cannot be computed."""
         source = origin(entry)
         if isinstance(source, Input):
-            return _converted(_default(source.b_socket), source.b_socket.type, entry.b_socket.type)
+            return converted(_default(source.b_socket), source.b_socket.type, entry.b_socket.type)
         try:
-            return _converted(self._node(source), source.b_socket.type, entry.b_socket.type)
+            return converted(self._node(source), source.b_socket.type, entry.b_socket.type)
         except UnfoldableError:
             default = _default(entry.b_socket)
             used = f"{_text(default)} is used for {entry.b_socket.name} instead"
@@ -71,6 +119,12 @@ class Folder:
         return value
 
 
+def _constant(a: float | Varying) -> float:
+    if isinstance(a, Varying):
+        raise TypeError("only a compiler computes with what varies")
+    return a
+
+
 def as_color(value: Value) -> Color:
     """A number is gray."""
     return (value, value, value) if isinstance(value, float) else value
@@ -83,7 +137,7 @@ def as_number(value: Value, socket_type: str) -> float:
     return sum(value) / 3.0 if socket_type == "VECTOR" else arithmetic.luminance(value)
 
 
-def _converted(value: Value, from_type: str, to_type: str) -> Value:
+def converted(value: Value, from_type: str, to_type: str) -> Value:
     """As Blender converts between sockets of different types."""
     return as_color(value) if to_type in ("RGBA", "VECTOR") else as_number(value, from_type)
 
@@ -98,7 +152,7 @@ def _default(b_socket: Any) -> Value:
     return (float(value[0]), float(value[1]), float(value[2]))
 
 
-def _title(b_node: Any) -> str:
+def title(b_node: Any) -> str:
     """The node's label, else its name, which is its kind unless the user renamed it."""
     return str(b_node.label or b_node.name)
 
@@ -151,11 +205,11 @@ def _blended(kind: str, a: Value, b: Value, factor: float, *, is_clamped: bool =
 
 
 def _number(folder: Folder, output: Output, name: str) -> float:
-    return folder.value(output.input(name))
+    return folder.constant_value(output.input(name))
 
 
 def _triple(folder: Folder, output: Output, name: str) -> Color:
-    return folder.color(output.input(name))
+    return folder.constant_color(output.input(name))
 
 
 def _invert(folder: Folder, output: Output) -> Value:

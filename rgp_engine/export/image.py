@@ -1,4 +1,4 @@
-"""Images, for as long as textures are not rendered: their average."""
+"""The average of an image, which stands for it where one value is asked for."""
 
 from typing import Any
 
@@ -7,8 +7,8 @@ import numpy.typing as npt
 
 from .arithmetic import Color
 
-# Larger images are not worth reading for one color; 8192 x 8192.
-_MAX_PIXELS = 1 << 26
+MOST_PIXELS = 1 << 26
+"""Larger images are not read: 8192 x 8192."""
 # Rows and columns that are looked at, evenly spread.
 _MAX_SAMPLES = 256
 _ENCODED = ("sRGB", "Filmic sRGB")
@@ -21,7 +21,7 @@ def average(b_image: Any, is_sphere: bool = False) -> tuple[Color, float] | None
     """
     width, height = b_image.size
     channels = b_image.channels
-    if not (width and height and channels) or width * height > _MAX_PIXELS:
+    if not (width and height and channels) or width * height > MOST_PIXELS:
         return None
     pixels = np.empty(width * height * channels, np.float32)
     b_image.pixels.foreach_get(pixels)

@@ -4,6 +4,7 @@ from typing import Any
 
 from .context import ExportContext
 from .coordinates import matrix_array
+from .hashing import name_hash
 from .light import export_light
 from .material import material_index
 from .mesh import mesh_arrays
@@ -38,36 +39,57 @@ def _export_mesh(context: ExportContext, b_instance: Any) -> None:
         return
     b_object = b_instance.object
     # Never keyed by name: instances that geometry nodes make all bear the name of their object.
-    key = b_object.data.as_pointer()
+    materials = _materials(context, b_object)
+    layers = frozenset[str]().union(*(context.layers_read[index] for index in materials))
+    key = (b_object.data.as_pointer(), layers)
     if key not in context.meshes:
-        context.meshes[key] = _add_mesh(context, b_object)
+        context.meshes[key] = _add_mesh(context, b_object, layers)
     _report_unsupported(context, b_instance)
     mesh = context.meshes[key]
     if mesh is None:
         return
-    context.builder.add_object(
-        b_object.name,
-        mesh,
-        matrix_array(b_instance.matrix_world),
-        _materials(context, b_object),
-        visibility,
-    )
+    matrix = matrix_array(b_instance.matrix_world)
+    index = context.builder.add_object(b_object.name, mesh, matrix, materials, visibility)
+    if context.asking_objects.intersection(materials):
+        context.builder.set_object_info(index, _object_info(b_instance))
 
 
-def _add_mesh(context: ExportContext, b_object: Any) -> int | None:
-    """Hands an object's mesh to the core, named as the artist sees it; None when it has no triangles."""
-    arrays = mesh_arrays(b_object.data)
+def _object_info(b_instance: Any) -> dict[str, Any]:
+    """What the node Object Info says."""
+    b_object = b_instance.object
+    random = b_instance.random_id if b_instance.is_instance else name_hash(b_object.name)
+    return {
+        "color": [float(channel) for channel in b_object.color],
+        "index": float(b_object.pass_index),
+        "random": random % (1 << 32) / float((1 << 32) - 1),
+    }
+
+
+def _add_mesh(context: ExportContext, b_object: Any, layers: frozenset[str]) -> int | None:
+    """Hands an object's mesh and some layers to the core, named as the artist sees it; None without triangles."""
+    arrays = mesh_arrays(b_object.data, sorted(layers))
     if arrays is None:
         return None
+    for name in sorted(layers - arrays.layers.keys()):
+        context.log.add(
+            b_object.name, f"its material reads {_layer_text(name)}, which the mesh does not have; 0 is used"
+        )
     index: int = context.builder.add_mesh(
         b_object.name,
         arrays.positions,
         arrays.triangles,
         arrays.corner_normals,
-        arrays.corner_uvs,
+        [(context.attribute_number(name), values) for name, values in arrays.layers.items()],
         arrays.slots,
     )
     return index
+
+
+def _layer_text(name: str) -> str:
+    kind, _, which = name.partition(":")
+    return {"uv": f'the UV map "{which}"' if which else "a UV map", "color": "a color attribute"}.get(
+        kind, f'the attribute "{which}"'
+    )
 
 
 def _materials(context: ExportContext, b_object: Any) -> list[int]:

@@ -75,7 +75,7 @@ def _node_factor(context: ExportContext, b_light: Any) -> Color:
     source = origin(Input(b_output.inputs["Surface"], ()))
     folder = Folder(b_light.name, context.log)
     if isinstance(source, Output) and source.b_node.type == "EMISSION":
-        strength = folder.value(source.input("Strength"))
-        return scale(folder.color(source.input("Color")), strength)
+        strength = folder.constant_value(source.input("Strength"))
+        return scale(folder.constant_color(source.input("Color")), strength)
     folder.report("its nodes are not a single Emission; the light's own power and color are used")
     return WHITE

@@ -3,8 +3,8 @@
 from typing import Any
 
 from .closures import WeightedClosure, closures
+from .compiler import MOST_INSTRUCTIONS, Compiler, displace
 from .context import ExportContext
-from .fold import Folder
 from .nodes import Input, Output, node_tree, origin, output_node
 
 _DEFAULT = {"weight": [1.0] * 3, "closure": {"kind": "diffuse", "color": [0.8] * 3}}
@@ -14,14 +14,20 @@ def material_index(context: ExportContext, b_material: Any | None) -> int:
     """Index of an evaluated material in the builder, added when it is met first; None is Blender's default grey."""
     key = None if b_material is None else b_material.as_pointer()
     if key not in context.materials:
-        record = _default_record() if b_material is None else material_record(context, b_material)
+        name = "(no material)" if b_material is None else b_material.name
+        compiler = Compiler(context, name)
+        record = _default_record() if b_material is None else material_record(compiler, b_material)
         context.emits |= any(map(_emits, record["closures"]))
-        context.materials[key] = context.builder.add_material(record)
+        index = context.builder.add_material(record)
+        context.materials[key] = index
+        context.layers_read[index] = frozenset(compiler.attributes)
+        if compiler.asks_object:
+            context.asking_objects.add(index)
     return context.materials[key]
 
 
-def material_record(context: ExportContext, b_material: Any) -> dict[str, Any]:
-    """The surface of a material; displacement and volume are reported."""
+def material_record(compiler: Compiler, b_material: Any) -> dict[str, Any]:
+    """The surface of a material; a volume is reported."""
     name = b_material.name
     b_tree = node_tree(b_material)
     if b_tree is None:
@@ -30,13 +36,26 @@ def material_record(context: ExportContext, b_material: Any) -> dict[str, Any]:
         return {"name": name, "closures": [{"weight": [1.0] * 3, "closure": closure}]}
     b_output = output_node(b_tree)
     if b_output is None:
-        context.log.add(name, "it has no Material Output node; black is used")
+        compiler.report("it has no Material Output node; black is used")
         return {"name": name, "closures": []}
-    for socket in ("Volume", "Displacement"):
-        if isinstance(origin(Input(b_output.inputs[socket], ())), Output):
-            context.log.add(name, f"{socket} is not supported yet; left out")
-    folder = Folder(name, context.log)
-    return {"name": name, "closures": closures(folder, Input(b_output.inputs["Surface"], ()))}
+    if isinstance(origin(Input(b_output.inputs["Volume"], ())), Output):
+        compiler.report("Volume is not supported yet; left out")
+    displacement = Input(b_output.inputs["Displacement"], ())
+    if isinstance(origin(displacement), Output) and not displace(compiler, displacement):
+        compiler.report("this Displacement is not supported yet; left out")
+    elif compiler.normal is not None and getattr(b_material, "displacement_method", "BUMP") != "BUMP":
+        compiler.report("its Displacement is rendered as a bump")
+    records, outputs = closures(compiler, Input(b_output.inputs["Surface"], ()))
+    record: dict[str, Any] = {"name": name, "closures": records}
+    if not outputs and compiler.normal is None:
+        return record
+    if len(compiler.instructions) > MOST_INSTRUCTIONS:
+        compiler.report("its nodes are too many; what varies is replaced by a typical value")
+        return record
+    instructions = compiler.instructions
+    normal = None if compiler.normal is None else compiler.normal.index
+    record["program"] = {"instructions": instructions, "outputs": outputs, "normal": normal}
+    return record
 
 
 def _default_record() -> dict[str, Any]:

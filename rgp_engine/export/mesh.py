@@ -5,6 +5,7 @@ Blender's collections are read through the address of their first element where 
 """
 
 import ctypes
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .coordinates import mark_infinite
+from .layers import corner_layer
 
 
 @dataclass
@@ -24,14 +26,14 @@ class MeshArrays:
     """(T, 3)"""
     corner_normals: npt.NDArray[np.float32] | None
     """(T, 3, 3); None where every face is flat."""
-    corner_uvs: npt.NDArray[np.float32] | None
-    """(T, 3, 2); None without texture coordinates."""
     slots: npt.NDArray[np.uint16] | None
     """(T,); None where every face has the first material."""
+    layers: dict[str, npt.NDArray[np.float32]]
+    """By name, (T, 3, 1 to 4)."""
 
 
-def mesh_arrays(b_mesh: Any) -> MeshArrays | None:
-    """Arrays of an evaluated mesh; None when it has no triangle."""
+def mesh_arrays(b_mesh: Any, layers: Iterable[str] = ()) -> MeshArrays | None:
+    """Arrays of an evaluated mesh, with the layers of those names that it has; None when it has no triangle."""
     b_mesh.calc_loop_triangles()
     if not b_mesh.loop_triangles:
         return None
@@ -45,8 +47,8 @@ def mesh_arrays(b_mesh: Any) -> MeshArrays | None:
         mark_infinite(positions),
         corner_vertices[corners].astype(np.uint32),
         _corner_normals(b_mesh, corners),
-        _corner_uvs(b_mesh, corners),
         _slots(b_mesh),
+        {name: values for name in layers if (values := corner_layer(b_mesh, name, corners)) is not None},
     )
 
 
@@ -55,16 +57,6 @@ def _corner_normals(b_mesh: Any, corners: npt.NDArray[np.int32]) -> npt.NDArray[
     if b_mesh.normals_domain == "FACE":
         return None
     return _elements(b_mesh.corner_normals, "vector", np.float32)[corners]
-
-
-def _corner_uvs(b_mesh: Any, corners: npt.NDArray[np.int32]) -> npt.NDArray[np.float32] | None:
-    """Texture coordinates of the layer that is active for rendering."""
-    b_layer = next((layer for layer in b_mesh.uv_layers if layer.active_render), None)
-    if b_layer is None:
-        return None
-    uvs = np.empty((len(b_mesh.loops), 2), np.float32)
-    b_layer.uv.foreach_get("vector", uvs.reshape(-1))
-    return uvs[corners]
 
 
 def _slots(b_mesh: Any) -> npt.NDArray[np.uint16] | None:

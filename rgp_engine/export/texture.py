@@ -1,4 +1,4 @@
-"""What stands for a texture as long as textures are not rendered: its average."""
+"""What stands for a texture where one value is asked for: its average."""
 
 from collections.abc import Callable
 from typing import Any
@@ -34,14 +34,14 @@ def texture_average(b_node: Any, b_output: Any, fold: Callable[[str], Value]) ->
     if kind in ("TEX_IMAGE", "TEX_ENVIRONMENT"):
         return _image(b_node, b_output)
     if kind in _PATTERNS:
-        return _shaped(0.5, b_output), "procedural textures are not supported yet"
+        return _shaped(0.5, b_output), "only a typical value is used here"
     if kind in _MIXES:
-        return _mix(b_node, b_output, fold), "procedural textures are not supported yet"
+        return _mix(b_node, b_output, fold), "only a typical value is used here"
     if kind == "LIGHT_PATH":
-        return _LIGHT_PATH.get(b_output.identifier, 0.0), "ray kinds are not told apart yet"
+        return _LIGHT_PATH.get(b_output.identifier, 0.0), "ray kinds are not told apart here"
     if kind in ("FRESNEL", "LAYER_WEIGHT"):
         value = 0.5 if b_output.identifier == "Facing" else _FRESNEL_OF_GLASS
-        return value, "values that depend on the view are not supported yet"
+        return value, "values that depend on the view are not supported here"
     return None
 
 
@@ -52,7 +52,7 @@ def _image(b_node: Any, b_output: Any) -> tuple[Value, str]:
     mean = average(b_image, is_sphere=b_node.type == "TEX_ENVIRONMENT")
     if mean is None:
         return _channel(MISSING, 1.0, b_output), f'the image "{b_image.name}" cannot be read'
-    return _channel(*mean, b_output), "image textures are not supported yet, only their average"
+    return _channel(*mean, b_output), "only its average is used here"
 
 
 def _channel(color: Color, alpha: float, b_output: Any) -> Value:

@@ -35,7 +35,7 @@ def world_radiance(context: ExportContext, b_world: Any) -> Color:
     if isinstance(origin(Input(b_output.inputs["Volume"], ())), Output):
         folder.report("volumes are not supported yet; left out")
     red = green = blue = 0.0
-    for part in closures(folder, Input(b_output.inputs["Surface"], ())):
+    for part in closures(folder, Input(b_output.inputs["Surface"], ()))[0]:
         if part["closure"]["kind"] == "emission":
             weight, radiance = part["weight"], part["closure"]["radiance"]
             red += weight[0] * radiance[0]

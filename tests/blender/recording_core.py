@@ -15,6 +15,7 @@ class RenderError(Exception):
 class SceneBuilder:
     def __init__(self) -> None:
         self.materials: list[dict[str, Any]] = []
+        self.textures: list[dict[str, Any]] = []
         self.meshes: list[dict[str, Any]] = []
         self.objects: list[dict[str, Any]] = []
         self.lamps: list[dict[str, Any]] = []
@@ -25,9 +26,17 @@ class SceneBuilder:
         self.materials.append(record)
         return len(self.materials) - 1
 
-    def add_mesh(self, name: str, positions: Any, triangles: Any, normals: Any, uvs: Any, slots: Any) -> int:
-        names = ("name", "positions", "triangles", "corner_normals", "corner_uvs", "slots")
-        self.meshes.append(dict(zip(names, (name, positions, triangles, normals, uvs, slots), strict=True)))
+    def add_texture(self, name: str, pixels: Any, encoding: str) -> int:
+        self.textures.append({"name": name, "pixels": pixels, "encoding": encoding})
+        return len(self.textures) - 1
+
+    def add_mesh(
+        self, name: str, positions: Any, triangles: Any, normals: Any, layers: Any, slots: Any
+    ) -> int:
+        names = ("name", "positions", "triangles", "corner_normals", "layers", "slots")
+        self.meshes.append(
+            dict(zip(names, (name, positions, triangles, normals, layers, slots), strict=True))
+        )
         return len(self.meshes) - 1
 
     def add_object(
@@ -37,6 +46,9 @@ class SceneBuilder:
         values = (name, mesh, world_from_object, materials, visibility)
         self.objects.append(dict(zip(names, values, strict=True)))
         return len(self.objects) - 1
+
+    def set_object_info(self, index: int, record: dict[str, Any]) -> None:
+        self.objects[index]["info"] = record
 
     def add_lamp(self, record: dict[str, Any]) -> int:
         self.lamps.append(record)

@@ -182,7 +182,7 @@ def test_environment_picture_is_replaced_by_its_mean_over_the_sphere(scene, expo
     build.connect(b_tree, b_texture, b_background, "Color")
     build.connect(b_tree, b_background, b_output, "Surface")
     assert export().world["radiance"] == pytest.approx([1.0] * 3, rel=1e-5)
-    assert any("image textures are not supported yet" in text for text in problems())
+    assert any("only its average is used here" in text for text in problems())
 
 
 def test_no_world_is_black(scene, export):

@@ -253,21 +253,90 @@ def textured(kind, output=None, **properties):
     return b_material
 
 
-def test_image_is_replaced_by_its_linear_mean(scene, closures, problems):
+def test_image_stands_beside_its_linear_mean(scene, closures, recorded, problems):
     b_image = bpy.data.images.new("Chess", 2, 2)
     b_image.pixels.foreach_set(np.array([[1, 1, 1, 1], [0.5, 0.5, 0.5, 1]] * 2, np.float32).ravel())
     closure = only(closures(textured("ShaderNodeTexImage", image=b_image)))
     # 0.5 is kept as 128/255, which is 0.2158 linear (IEC 61966-2-1).
     assert closure["color"] == pytest.approx([(1.0 + 0.2158605) / 2] * 3, abs=1e-5)
-    assert sum("Image Texture" in text for text in problems()) == 1
+    assert not any("Image Texture" in text for text in problems())
+    (texture,) = recorded.last.textures
+    assert (texture["name"], texture["encoding"]) == ("Chess", "srgb")
+    assert texture["pixels"].dtype == np.uint8
+    assert texture["pixels"][..., 0].tolist() == [[255, 128], [255, 128]]
+    program = recorded.last.material_of("Material")["program"]
+    assert program["outputs"] == [{"closure": 0, "input": "color", "register": 1}]
+    assert [step["op"] for step in program["instructions"]] == ["attribute", "image"]
+    assert program["normal"] is None
 
 
-def test_data_image_is_taken_as_it_is(scene, closures):
+def test_data_image_is_taken_as_it_is(scene, closures, recorded):
     b_image = bpy.data.images.new("Data", 2, 2)
     b_image.colorspace_settings.name = "Non-Color"
     b_image.pixels.foreach_set(np.tile(np.array([0.2, 0.4, 0.6, 1], np.float32), 4))
     color = only(closures(textured("ShaderNodeTexImage", image=b_image)))["color"]
     assert color == pytest.approx([0.2, 0.4, 0.6], abs=1 / 255)
+    assert recorded.last.textures[0]["encoding"] == "linear"
+
+
+def test_an_image_is_handed_over_once(scene, closures, recorded):
+    b_image = bpy.data.images.new("Shared", 2, 2)
+    b_other = textured("ShaderNodeTexImage", image=b_image)
+    b_other.name = "Other"
+    b_mesh = build.cube()
+    b_mesh.materials.append(b_other)
+    build.add_object("Another", b_mesh)
+    closures(textured("ShaderNodeTexImage", image=b_image))
+    assert len(recorded.last.textures) == 1
+
+
+def test_alpha_is_multiplied_into_the_color(scene, closures, recorded):
+    b_image = bpy.data.images.new("Leaf", 1, 1, alpha=True)
+    b_image.pixels.foreach_set(np.array([1.0, 0.5, 0.0, 0.5], np.float32))
+    closures(textured("ShaderNodeTexImage", image=b_image))
+    assert recorded.last.textures[0]["pixels"].tolist() == [[[128, 64, 0, 128]]]
+
+
+def test_the_mesh_carries_the_layers_that_are_read(scene, closures, recorded, problems):
+    b_material = textured("ShaderNodeUVMap", uv_map="Missing")
+    closures(b_material)
+    assert recorded.last.meshes[0]["layers"] == []
+    expected = 'Quad: its material reads the UV map "Missing", which the mesh does not have; 0 is used'
+    assert expected in problems()
+
+
+def test_what_varies_reaches_the_share_of_a_closure(scene, closures, recorded):
+    b_material, b_tree, b_output = build.material()
+    b_mix = mixed(b_tree, 0.0, diffuse(b_tree, 0.1), diffuse(b_tree, 0.2))
+    build.connect(b_tree, b_tree.nodes.new("ShaderNodeTexGradient"), b_mix, "Fac", "Fac")
+    build.connect(b_tree, b_mix, b_output, "Surface")
+    assert [part["weight"] for part in closures(b_material)] == [[0.5] * 3, [0.5] * 3]
+    outputs = recorded.last.material_of("Material")["program"]["outputs"]
+    assert [(output["closure"], output["input"]) for output in outputs] == [(0, "weight"), (1, "weight")]
+
+
+def test_displacement_is_a_bump(scene, closures, recorded, problems):
+    b_material, b_tree, b_output = build.material()
+    b_material.displacement_method = "DISPLACEMENT"
+    b_displacement = b_tree.nodes.new("ShaderNodeDisplacement")
+    build.connect(b_tree, b_tree.nodes.new("ShaderNodeTexNoise"), b_displacement, "Height")
+    build.connect(b_tree, b_displacement, b_output, "Displacement")
+    build.connect(b_tree, diffuse(b_tree, 0.5), b_output, "Surface")
+    closures(b_material)
+    program = recorded.last.material_of("Material")["program"]
+    assert program["instructions"][program["normal"]]["op"] == "bump"
+    assert program["outputs"] == []
+    assert "Material: its Displacement is rendered as a bump" in problems()
+
+
+def test_a_constant_tree_has_no_program(scene, closures, recorded):
+    b_material, b_tree, b_output = build.material()
+    b_value = build.node(b_tree, "ShaderNodeMath")
+    b_shader = b_tree.nodes.new("ShaderNodeBsdfDiffuse")
+    build.connect(b_tree, b_value, b_shader, "Color")
+    build.connect(b_tree, b_shader, b_output, "Surface")
+    closures(b_material)
+    assert "program" not in recorded.last.material_of("Material")
 
 
 def test_missing_image_is_magenta_and_reported(scene, closures, problems):
@@ -323,17 +392,18 @@ def test_principled_inputs_that_are_left_out(scene, closures, problems, name):
     assert f'Material: node "Principled BSDF": {name} is not supported yet; left out' in problems()
 
 
-def test_normal_map_displacement_and_volume_are_reported(scene, closures, problems):
+def test_displacement_and_volume_are_reported(scene, closures, recorded, problems):
     b_material, b_tree, b_output = build.material()
     b_shader = b_tree.nodes.new("ShaderNodeBsdfDiffuse")
     build.connect(b_tree, b_tree.nodes.new("ShaderNodeBump"), b_shader, "Normal")
     build.connect(b_tree, b_shader, b_output, "Surface")
-    build.connect(b_tree, b_tree.nodes.new("ShaderNodeDisplacement"), b_output, "Displacement")
+    build.connect(b_tree, b_tree.nodes.new("ShaderNodeVectorDisplacement"), b_output, "Displacement")
     build.connect(b_tree, b_tree.nodes.new("ShaderNodeVolumeScatter"), b_output, "Volume")
     closures(b_material)
     found = [text for text in problems() if text.startswith("Material")]
     assert found == [
         "Material: Volume is not supported yet; left out",
-        "Material: Displacement is not supported yet; left out",
-        'Material: node "Diffuse BSDF": Normal is not supported yet; the surface\'s own is used instead',
+        "Material: this Displacement is not supported yet; left out",
     ]
+    program = recorded.last.material_of("Material")["program"]
+    assert program["instructions"][program["normal"]]["op"] == "bump"

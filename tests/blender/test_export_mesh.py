@@ -41,14 +41,16 @@ def test_arrays_equal_the_documented_properties(scene, monkeypatch, reads_memory
     if not reads_memory:
         monkeypatch.setattr(export_mesh, "_memory_view", lambda *_: None)
     b_mesh = wavy()
-    arrays = mesh_arrays(b_mesh)
+    arrays = mesh_arrays(b_mesh, ["uv", "uv:UV", "uv:Other"])
     corners = slow(b_mesh.loop_triangles, "loops", 3, np.int32)
     assert np.array_equal(arrays.positions, slow(b_mesh.vertices, "co", 3, np.float32))
     assert np.array_equal(arrays.triangles, slow(b_mesh.loop_triangles, "vertices", 3, np.int32))
     assert np.array_equal(
         arrays.corner_normals, slow(b_mesh.corner_normals, "vector", 3, np.float32)[corners]
     )
-    assert np.array_equal(arrays.corner_uvs, slow(b_mesh.uv_layers["UV"].data, "uv", 2, np.float32)[corners])
+    uvs = slow(b_mesh.uv_layers["UV"].data, "uv", 2, np.float32)[corners]
+    assert sorted(arrays.layers) == ["uv", "uv:UV"]
+    assert all(np.array_equal(layer, uvs) for layer in arrays.layers.values())
     assert np.array_equal(arrays.slots, slow(b_mesh.loop_triangles, "material_index", 1, np.int32)[:, 0])
     assert (arrays.positions.dtype, arrays.triangles.dtype, arrays.slots.dtype) == (
         np.float32,
@@ -69,7 +71,7 @@ def test_memory_of_another_layout_is_refused(scene):
 def test_flat_mesh_has_no_normals_and_one_slot(scene):
     arrays = mesh_arrays(build.cube())
     assert arrays.corner_normals is None
-    assert arrays.corner_uvs is None
+    assert arrays.layers == {}
     assert arrays.slots is None
     assert arrays.triangles.shape == (12, 3)
 
@@ -104,7 +106,9 @@ def test_uvs_are_those_active_for_rendering(scene):
     b_render.uv.foreach_set("vector", np.full(8, 0.375, np.float32))
     b_render.active_render = True
     b_mesh.uv_layers.active_index = 0
-    assert (mesh_arrays(b_mesh).corner_uvs == 0.375).all()
+    layers = mesh_arrays(b_mesh, ["uv", "uv:Other"]).layers
+    assert (layers["uv"] == 0.375).all()
+    assert (layers["uv:Other"] != 0.375).any()
 
 
 def test_a_million_triangles_take_less_than_two_seconds(scene):

@@ -39,7 +39,7 @@ def test_no_camera():
         (
             np.zeros((3, 3), np.float32),
             np.zeros((1, 3), np.uint32),
-            {"corner_uvs": np.zeros((2, 3, 2), np.float32)},
+            {"layers": [(0, np.zeros((2, 3, 2), np.float32))]},
         ),
         (
             np.zeros((3, 3), np.float32),

@@ -48,17 +48,17 @@ def test_a_clean_tree_has_no_problems(tmp_path: Path) -> None:
         (
             "core/renderer/src/gather/rays.rs",
             "use crate::photon_pass;\n",
-            "rays.rs:1: gather (rank 6) imports photon_pass",
+            "rays.rs:1: gather (rank 7) imports photon_pass",
         ),
         (
             "core/renderer/src/light/mod.rs",
             "use crate::{math, render};\n",
-            "mod.rs:1: light (rank 2) imports render",
+            "mod.rs:1: light (rank 3) imports render",
         ),
         (
             "core/renderer/src/light/mod.rs",
             "fn f() -> crate::gather::Ray {}\n",
-            "light (rank 2) imports gather",
+            "light (rank 3) imports gather",
         ),
         (
             "core/renderer/src/film/tile.rs",

@@ -6,7 +6,8 @@ use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use rgp_renderer::error::RenderError;
-use rgp_renderer::scene::{self as core, MeshArrays, record};
+use rgp_renderer::scene::{self as core, CornerLayer, MeshArrays, record};
+use rgp_renderer::shader::{Encoding, Pixels, Texture};
 use serde::de::DeserializeOwned;
 
 use crate::errors::{SceneError, to_python};
@@ -31,14 +32,35 @@ impl SceneBuilder {
         Ok(self.0.add_material(parse(record, "material")?))
     }
 
-    #[pyo3(signature = (name, positions, triangles, corner_normals=None, corner_uvs=None, slots=None))]
+    #[pyo3(signature = (name, pixels, encoding))]
+    fn add_texture(&mut self, name: &str, pixels: &Bound<'_, PyAny>, encoding: &str) -> PyResult<usize> {
+        let encoding = match encoding {
+            "linear" => Encoding::Linear,
+            "srgb" => Encoding::Srgb,
+            other => {
+                return Err(SceneError::new_err(format!("image '{name}': there is no encoding '{other}'")));
+            }
+        };
+        let (size, pixels) = match pixels.extract::<PyReadonlyArrayDyn<'_, u8>>() {
+            Ok(bytes) => (size_of_image(name, bytes.shape())?, Pixels::Bytes(texels(&bytes))),
+            Err(_) => {
+                let floats = pixels.extract::<PyReadonlyArrayDyn<'_, f32>>()?;
+                (size_of_image(name, floats.shape())?, Pixels::Floats(texels(&floats)))
+            }
+        };
+        let texture = Texture::new(size, pixels, encoding)
+            .map_err(|fault| SceneError::new_err(format!("image '{name}': {fault}")))?;
+        Ok(self.0.add_texture(texture))
+    }
+
+    #[pyo3(signature = (name, positions, triangles, corner_normals=None, layers=None, slots=None))]
     fn add_mesh(
         &mut self,
         name: String,
         positions: PyReadonlyArrayDyn<'_, f32>,
         triangles: PyReadonlyArrayDyn<'_, u32>,
         corner_normals: Option<PyReadonlyArrayDyn<'_, f32>>,
-        corner_uvs: Option<PyReadonlyArrayDyn<'_, f32>>,
+        layers: Option<Vec<(u32, PyReadonlyArrayDyn<'_, f32>)>>,
         slots: Option<PyReadonlyArrayDyn<'_, u16>>,
     ) -> PyResult<usize> {
         let arrays = MeshArrays {
@@ -48,10 +70,9 @@ impl SceneBuilder {
                 Some(array) => corners(rows::<f32, 9>(&name, "corner_normals", &array, &[3, 3])?),
                 None => Vec::new(),
             },
-            corner_uvs: match corner_uvs {
-                Some(array) => corners(rows::<f32, 6>(&name, "corner_uvs", &array, &[3, 2])?),
-                None => Vec::new(),
-            },
+            layers: (layers.unwrap_or_default().iter())
+                .map(|(attribute, array)| layer(&name, *attribute, array))
+                .collect::<PyResult<_>>()?,
             slots: match slots {
                 Some(array) => rows::<u16, 1>(&name, "slots", &array, &[])?.into_flattened(),
                 None => Vec::new(),
@@ -74,6 +95,10 @@ impl SceneBuilder {
             .try_into()
             .map_err(|_| SceneError::new_err(format!("'{name}': world_from_object is not 4 x 4")))?;
         self.0.add_object(name, mesh, record::matrix(&matrix), materials, visibility).map_err(to_python)
+    }
+
+    fn set_object_info(&mut self, index: usize, record: &Bound<'_, PyDict>) -> PyResult<()> {
+        self.0.set_object_info(index, parse(record, "object")?).map_err(to_python)
     }
 
     fn add_lamp(&mut self, record: &Bound<'_, PyDict>) -> PyResult<usize> {
@@ -142,6 +167,39 @@ fn rows<T: numpy::Element + Copy + Default, const N: usize>(
         }
     }
     Ok(out)
+}
+
+/// A layer of values at corners from an array of shape (T, 3, channels).
+fn layer(name: &str, attribute: u32, array: &PyReadonlyArrayDyn<'_, f32>) -> PyResult<CornerLayer> {
+    match *array.shape() {
+        [_, 3, channels @ 1..=4] => {
+            Ok(CornerLayer { attribute, channels, values: array.as_array().iter().copied().collect() })
+        }
+        ref other => {
+            let message =
+                format!("mesh '{name}': a layer has the shape {other:?}; it should be (n, 3, 1 to 4)");
+            Err(SceneError::new_err(message))
+        }
+    }
+}
+
+/// Width and height of an array of shape (height, width, 4).
+fn size_of_image(name: &str, shape: &[usize]) -> PyResult<[usize; 2]> {
+    match *shape {
+        [height, width, 4] => Ok([width, height]),
+        ref other => {
+            let message = format!("image '{name}' has the shape {other:?}; it should be (height, width, 4)");
+            Err(SceneError::new_err(message))
+        }
+    }
+}
+
+fn texels<T: numpy::Element + Copy + Default>(array: &PyReadonlyArrayDyn<'_, T>) -> Vec<[T; 4]> {
+    let values: Vec<T> = match array.as_slice().ok().filter(|_| array.is_c_contiguous()) {
+        Some(values) => values.to_vec(),
+        None => array.as_array().iter().copied().collect(),
+    };
+    values.as_chunks().0.to_vec()
 }
 
 /// Rows of three corners.

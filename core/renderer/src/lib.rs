@@ -20,6 +20,7 @@ pub mod render;
 pub mod sampling;
 pub mod scene;
 pub mod settings;
+pub mod shader;
 pub mod stats;
 
 use std::path::Path;

@@ -1,12 +1,16 @@
 //! The scene as the passes see it: what is met, how it scatters, what lights it, what is called for.
 
+mod hit_point;
+
 use glam::{DVec3, Vec3};
 
 use crate::accel::{Accel, Hit, Ray};
-use crate::bsdf::{Bsdf, BsdfSample, LobeSet, PreparedMaterial, ShadingFrame};
+use crate::bsdf::{Bsdf, BsdfSample, LobeSet, PreparedMaterial, ShadingFrame, Varying};
+use crate::color::Rgb;
 use crate::effects_plan::EffectsPlan;
 use crate::light::{Lights, Receiver};
 use crate::scene::{World, visibility};
+use hit_point::HitPoint;
 
 /// Everything a pass asks of the scene.
 pub struct LitScene<'a> {
@@ -44,14 +48,43 @@ impl Surface<'_> {
 }
 
 impl<'a> LitScene<'a> {
-    /// The surface behind a hit that is no lamp.
+    /// The surface behind a hit that is no lamp. `width` is how wide the ray is there (scene units): what varies within that
+    /// is seen as its mean.
     #[must_use]
-    pub fn surface(&'a self, ray: &Ray, hit: Hit) -> Surface<'a> {
+    pub fn surface(&'a self, ray: &Ray, hit: Hit, width: f32) -> Surface<'a> {
         let ng = self.accel.geometric_normal(hit.object, hit.primitive);
         let ns = self.accel.shading_normal(&hit);
         let material = &self.materials[self.accel.material(hit.object, hit.primitive)];
-        let bsdf = material.bsdf(-ray.direction, ng, ns);
+        let bsdf = match material.varying() {
+            None => material.bsdf(-ray.direction, ng, ns),
+            Some(varying) => {
+                let point = HitPoint::new(self.accel.scene(), ray, &hit, [ng, ns], width);
+                self.varying_bsdf(material, varying, &point)
+            }
+        };
         Surface { p: ray.origin + ray.direction * hit.t, ng, bsdf, hit }
+    }
+
+    #[inline(never)]
+    fn varying_bsdf(&self, material: &PreparedMaterial, varying: &Varying, point: &HitPoint<'_>) -> Bsdf<'a> {
+        let registers = varying.run(point, &self.accel.scene().textures);
+        let ns = match varying.normal(&registers) {
+            Some(normal) => point.outward(normal.v.truncate()),
+            None => point.ns,
+        };
+        material.at(varying, &registers).into_bsdf(point.wo, point.ng, ns)
+    }
+
+    /// The albedo at a hit on a material that varies and is a Lambert reflector; `None` where it is more.
+    #[inline(never)]
+    #[must_use]
+    pub fn varying_albedo(&self, material: usize, ray: &Ray, hit: &Hit, width: f32) -> Option<Rgb> {
+        let varying = self.materials[material].varying().filter(|varying| varying.is_lambert())?;
+        let ng = self.accel.geometric_normal(hit.object, hit.primitive);
+        let ns = self.accel.shading_normal(hit);
+        let scene = self.accel.scene();
+        let point = HitPoint::new(scene, ray, hit, [ng, ns], width);
+        Some(varying.lambert(&varying.run(&point, &scene.textures)))
     }
 
     /// Normals at a hit whose geometric normal is known, on the side the ray came from.

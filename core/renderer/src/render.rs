@@ -25,7 +25,8 @@ use crate::pyramid::{
 };
 use crate::scene::Scene;
 use crate::settings::{EstimatorKind, RenderSettings, parse_bins};
-use crate::stats::{EstimatorStats, Stats};
+use crate::shader::Texture;
+use crate::stats::{EstimatorStats, Stats, TextureCounts};
 
 /// Renders `scene` into `film`, with Embree from the file `library`. `stats` grows as passes end, so that it is worth
 /// reading after a cancel too.
@@ -81,6 +82,10 @@ fn passes(
 ) -> Result<(), RenderError> {
     progress.enter(Stage::Accel);
     let clock = Instant::now();
+    stats.textures = TextureCounts {
+        images: scene.textures.len(),
+        bytes: scene.textures.iter().map(Texture::bytes).sum(),
+    };
     let lit = light(scene, settings, library, progress)?;
     stats.seconds.accel = clock.elapsed().as_secs_f64();
     stats.effects = lit.plan.report();
@@ -126,7 +131,7 @@ impl Work<'_> {
         // A single pass has nothing to be compared with and reads all photons.
         let sets = SETS.min(settings.gather.camera_samples as usize);
         let accumulator = Accumulator::new(&layout, lit.lights.total_flux().max_channel(), bins);
-        self.photons(&PyramidDeposits::new(lit, &accumulator), sets, stats)?;
+        self.photons(&PyramidDeposits::new(&accumulator), sets, stats)?;
         stats.photons.deposited = accumulator.deposited();
         stats.photons.lost = accumulator.lost();
 
@@ -150,7 +155,7 @@ impl Work<'_> {
         self.charge_pyramid(&pyramid, build_bin_bytes, stats);
         stats.estimator =
             EstimatorStats { name: "pyramid", bytes: stats.pyramid.bytes, seconds: stats.seconds.pyramid };
-        let lookup = |set| PyramidLookup::new(lit, pyramid.view(set), settings.gather.retrace_distance);
+        let lookup = |set| PyramidLookup::new(pyramid.view(set), settings.gather.retrace_distance);
         let lookups: [_; SETS] = std::array::from_fn(lookup);
         self.gather(lookups.each_ref(), stats)
     }

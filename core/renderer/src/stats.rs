@@ -57,6 +57,15 @@ pub struct PhotonCounts {
     pub lost: u64,
 }
 
+/// Images that materials look up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct TextureCounts {
+    /// Images.
+    pub images: usize,
+    /// Memory of them, with their smaller versions.
+    pub bytes: usize,
+}
+
 /// Size of the pyramid.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct PyramidCounts {
@@ -150,6 +159,8 @@ pub struct Stats {
     pub rays: RayCounts,
     /// Photons.
     pub photons: PhotonCounts,
+    /// Textures.
+    pub textures: TextureCounts,
     /// Pyramid.
     pub pyramid: PyramidCounts,
     /// What the gather asked.

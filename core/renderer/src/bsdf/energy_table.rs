@@ -90,6 +90,17 @@ pub(super) fn compensation(total: f32, mean: f32, fss: Rgb) -> Rgb {
     fss.map(|f| 1.0 + f * mean / (1.0 - f * (1.0 - mean)).max(1e-4) * missing)
 }
 
+/// Makes every slice now, for indices that are not known beforehand.
+pub(super) fn prepare_all() {
+    LazyLock::force(&TOTAL);
+    LazyLock::force(&METAL);
+    (0..INDEX_NODES).into_par_iter().for_each(|node| {
+        [false, true].into_par_iter().for_each(|inside| {
+            slice(node, inside);
+        });
+    });
+}
+
 /// Makes the slices around every `eta` now, from both sides, so that no ray has to.
 pub(super) fn prepare(etas: &[f32]) {
     LazyLock::force(&TOTAL);

@@ -1,6 +1,7 @@
 //! Materials made ready for the render: closures checked, merged and classified once, so that a hit costs little.
 
 use std::ops::Index;
+use std::sync::Arc;
 
 use glam::Vec3;
 use smallvec::SmallVec;
@@ -10,10 +11,12 @@ use super::lobe::Lobe;
 use super::principled::{self, Principled};
 use super::reflection::{self, Roughness};
 use super::sanitize::Sanitizer;
-use super::{Bsdf, LobeSet, MAX_LOBES, ShadingFrame, energy_table, fresnel};
+use super::varying::Varying;
+use super::{Bsdf, LobeSet, MAX_LOBES, MaterialRef, ShadingFrame, energy_table, fresnel};
 use crate::color::Rgb;
-use crate::scene::record::ClosureRecord;
+use crate::scene::record::{ClosureRecord, WeightedClosure};
 use crate::scene::{Material, Problem};
+use crate::shader::Registers;
 
 /// Least value of [`PreparedMaterial::specular_tint`], so that dividing by it is safe.
 const LEAST_TINT: f32 = 0.02;
@@ -27,6 +30,15 @@ enum PreparedClosure {
     Principled(Box<Principled>),
 }
 
+/// What the effects plan takes out of a material: it is absorbed.
+#[derive(Clone, Copy, Debug, Default)]
+struct LeftOut {
+    /// Lobes of these classes are not made.
+    lobes: LobeSet,
+    emission: bool,
+    transparency: bool,
+}
+
 /// One material, ready to be asked for its BSDF at a hit.
 #[derive(Clone, Debug, Default)]
 pub struct PreparedMaterial {
@@ -34,14 +46,22 @@ pub struct PreparedMaterial {
     lambert: Rgb,
     /// Emission that is the same in every direction.
     bare_emission: Rgb,
-    transparency: Rgb,
+    /// Share of light that passes straight through.
+    straight: Rgb,
     closures: Vec<(Rgb, PreparedClosure)>,
     classes: LobeSet,
     constant_lambert: Option<Rgb>,
     mean_emission: Rgb,
     specular_tint: Rgb,
-    /// Lobes of these classes are not made.
-    left_out: LobeSet,
+    /// Share of light that passes straight through, the most that can occur.
+    transparency: Rgb,
+    /// Whether light can be refracted through it.
+    refracts: bool,
+    /// Indices of refraction the energy tables will be asked for.
+    etas: Vec<f32>,
+    /// Of a material whose closures differ from point to point: what makes them. Its own are typical ones.
+    varying: Option<Box<Varying>>,
+    left_out: LeftOut,
 }
 
 impl PreparedMaterial {
@@ -49,9 +69,24 @@ impl PreparedMaterial {
     #[must_use]
     pub fn new(material: &Material, problems: &mut Vec<Problem>) -> Self {
         let mut sanitizer = Sanitizer::default();
+        let mut prepared = Self::of_closures(&material.closures, &mut sanitizer);
+        prepared.finish();
+        sanitizer.report(&material.name, problems);
+        if let Some(program) = &material.program {
+            prepared.vary(Varying::new(&material.closures, program));
+        }
+        prepared
+    }
+
+    /// What a hit needs of closures that hold there alone.
+    pub(super) fn at_hit(closures: &[WeightedClosure]) -> Self {
+        Self::of_closures(closures, &mut Sanitizer::default())
+    }
+
+    fn of_closures(closures: &[WeightedClosure], sanitizer: &mut Sanitizer) -> Self {
         let mut prepared = Self::default();
         let mut lobes = 1;
-        for weighted in &material.closures {
+        for weighted in closures {
             let weight = sanitizer.weight(weighted.weight);
             let closure = sanitizer.closure(&weighted.closure);
             lobes += most_lobes(&closure);
@@ -61,9 +96,33 @@ impl PreparedMaterial {
                 prepared.add(weight, &closure);
             }
         }
-        prepared.finish(&mut sanitizer);
-        sanitizer.report(&material.name, problems);
+        prepared.lambert = sanitizer.at_most_one(prepared.lambert);
+        prepared.straight = sanitizer.at_most_one(prepared.straight);
+        let tints = prepared.closures.iter().map(|(weight, closure)| *weight * closure.rough_tint());
+        prepared.specular_tint = tints.sum::<Rgb>().map(|c| c.max(LEAST_TINT));
         prepared
+    }
+
+    /// Makes the material one of closures that differ from point to point, and whatever it says of itself hold for all.
+    fn vary(&mut self, varying: Varying) {
+        for extreme in varying.extremes() {
+            let mut extreme = Self::at_hit(&extreme);
+            extreme.finish();
+            self.classes = self.classes | extreme.classes;
+            self.transparency += extreme.straight;
+            self.refracts |= extreme.refracts;
+            self.etas.extend(extreme.etas);
+        }
+        self.transparency = self.transparency.map(|c| c.min(1.0));
+        self.constant_lambert = None;
+        self.varying = Some(Box::new(varying));
+    }
+
+    /// What makes the closures, where they differ from point to point.
+    #[must_use]
+    #[inline]
+    pub fn varying(&self) -> Option<&Varying> {
+        self.varying.as_deref()
     }
 
     fn add(&mut self, weight: Rgb, closure: &ClosureRecord) {
@@ -73,7 +132,7 @@ impl PreparedMaterial {
                 return;
             }
             ClosureRecord::Transparent { color } => {
-                self.transparency += weight * color;
+                self.straight += weight * color;
                 return;
             }
             ClosureRecord::Emission { radiance } => {
@@ -96,7 +155,7 @@ impl PreparedMaterial {
                 return;
             }
             ClosureRecord::Principled(ref record) => {
-                self.transparency += weight * (1.0 - record.alpha);
+                self.straight += weight * (1.0 - record.alpha);
                 let weight = weight * record.alpha;
                 let principled = Principled::new(record);
                 if let Some(albedo) = principled.lambert() {
@@ -112,18 +171,17 @@ impl PreparedMaterial {
     }
 
     /// Derives what is asked of the material as a whole.
-    fn finish(&mut self, sanitizer: &mut Sanitizer) {
-        self.lambert = sanitizer.at_most_one(self.lambert);
-        self.transparency = sanitizer.at_most_one(self.transparency);
+    fn finish(&mut self) {
         self.classes = if self.lambert.is_black() { LobeSet::EMPTY } else { LobeSet::DIFFUSE };
         for (_, closure) in &self.closures {
             self.classes = self.classes | closure.classes();
         }
-        if self.closures.is_empty() && self.transparency.is_black() {
+        self.transparency = self.straight;
+        self.refracts = self.closures.iter().any(|(_, closure)| closure.transmits());
+        self.etas = self.closures.iter().flat_map(|(_, closure)| closure.etas()).collect();
+        if self.closures.is_empty() && self.straight.is_black() {
             self.constant_lambert = Some(self.lambert);
         }
-        let tint: Rgb = self.closures.iter().map(|(weight, closure)| *weight * closure.rough_tint()).sum();
-        self.specular_tint = tint.map(|c| c.max(LEAST_TINT));
         self.mean_emission = self.cosine_mean_emission();
     }
 
@@ -141,12 +199,14 @@ impl PreparedMaterial {
 
     /// Leaves out all lobes of the classes `lobes`: what they would scatter is absorbed.
     pub fn leave_out_lobes(&mut self, lobes: LobeSet) {
-        self.left_out = self.left_out | lobes;
+        self.left_out.lobes = self.left_out.lobes | lobes;
         self.classes = self.classes.without(lobes);
+        self.refracts &= !lobes.intersects(LobeSet::DELTA);
     }
 
     /// Leaves out what the material emits.
     pub fn leave_out_emission(&mut self) {
+        self.left_out.emission = true;
         (self.bare_emission, self.mean_emission) = (Rgb::BLACK, Rgb::BLACK);
         for (_, closure) in &mut self.closures {
             if let PreparedClosure::Principled(principled) = closure {
@@ -157,10 +217,25 @@ impl PreparedMaterial {
 
     /// Leaves out what passes straight through: it is absorbed.
     pub fn leave_out_transparency(&mut self) {
-        self.transparency = Rgb::BLACK;
-        if self.closures.is_empty() {
+        self.left_out.transparency = true;
+        (self.straight, self.transparency) = (Rgb::BLACK, Rgb::BLACK);
+        if self.closures.is_empty() && self.varying.is_none() {
             self.constant_lambert = Some(self.lambert);
         }
+    }
+
+    /// The material as it is at one point, where the program of `varying` gave `registers`.
+    #[must_use]
+    pub fn at(&self, varying: &Varying, registers: &Registers) -> Self {
+        let mut here = varying.material(registers);
+        here.left_out.lobes = self.left_out.lobes;
+        if self.left_out.emission {
+            here.leave_out_emission();
+        }
+        if self.left_out.transparency {
+            here.leave_out_transparency();
+        }
+        here
     }
 
     /// Classes of the lobes that can occur.
@@ -176,7 +251,7 @@ impl PreparedMaterial {
         self.mean_emission
     }
 
-    /// Share of light that passes straight through.
+    /// Share of light that passes straight through, the most that can occur.
     #[must_use]
     pub fn transparency(&self) -> Rgb {
         self.transparency
@@ -185,14 +260,7 @@ impl PreparedMaterial {
     /// True when no light passes through, straight or refracted.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
-        let passes = |closure: &PreparedClosure| match closure {
-            PreparedClosure::Glossy { .. } => false,
-            PreparedClosure::Glass(_) | PreparedClosure::Refraction { .. } => true,
-            PreparedClosure::Principled(principled) => principled.transmits(),
-        };
-        let refracts = !self.left_out.intersects(LobeSet::DELTA);
-        self.transparency.is_black()
-            && !(refracts && self.closures.iter().any(|(_, closure)| passes(closure)))
+        self.transparency.is_black() && !self.refracts
     }
 
     /// The albedo, where the material scatters as one constant Lambert lobe and nothing passes through it. A black
@@ -207,8 +275,7 @@ impl PreparedMaterial {
         self.closures.is_empty()
     }
 
-    /// Color at normal incidence of the lobes of class [`LobeSet::ROUGH`], at least 0.02. Direction bins hold radiance
-    /// divided by it.
+    /// See [`Bsdf::specular_tint`].
     #[must_use]
     pub fn specular_tint(&self) -> Rgb {
         self.specular_tint
@@ -219,20 +286,34 @@ impl PreparedMaterial {
     #[must_use]
     #[inline]
     pub fn bsdf(&self, wo: Vec3, ng: Vec3, ns: Vec3) -> Bsdf<'_> {
+        MaterialRef::Shared(self).bsdf(wo, ng, ns)
+    }
+
+    /// The same for a material that was made for this hit.
+    #[must_use]
+    pub fn into_bsdf<'a>(self, wo: Vec3, ng: Vec3, ns: Vec3) -> Bsdf<'a> {
+        MaterialRef::Own(Arc::new(self)).bsdf(wo, ng, ns)
+    }
+}
+
+impl<'a> MaterialRef<'a> {
+    #[inline]
+    pub(super) fn bsdf(self, wo: Vec3, ng: Vec3, ns: Vec3) -> Bsdf<'a> {
+        let material: &PreparedMaterial = &self;
         let frame = ShadingFrame::new(wo, ng, ns);
         let cos = wo.dot(frame.ns).clamp(0.0, 1.0);
-        let (emission, transparency) = (self.bare_emission, self.transparency);
-        let mut bsdf = Bsdf { material: self, wo, lobes: SmallVec::new(), emission, transparency, frame };
-        if !self.lambert.is_black() {
-            bsdf.lobes.push(Lobe::lambert(self.lambert, 0));
+        let (mut emission, transparency) = (material.bare_emission, material.straight);
+        let mut lobes = SmallVec::new();
+        if !material.lambert.is_black() {
+            lobes.push(Lobe::lambert(material.lambert, 0));
         }
-        for (slot, (weight, closure)) in (1..).step_by(principled::LOBES).zip(&self.closures) {
-            bsdf.emission += closure.push(&mut bsdf.lobes, *weight, frame.entering, cos, slot);
+        for (slot, (weight, closure)) in (1..).step_by(principled::LOBES).zip(&material.closures) {
+            emission += closure.push(&mut lobes, *weight, frame.entering, cos, slot);
         }
-        if self.left_out != LobeSet::EMPTY {
-            bsdf.lobes.retain(|lobe| !self.left_out.intersects(lobe.class));
+        if material.left_out.lobes != LobeSet::EMPTY {
+            lobes.retain(|lobe: &mut Lobe| !material.left_out.lobes.intersects(lobe.class));
         }
-        bsdf
+        Bsdf { material: self, wo, lobes, emission, transparency, frame }
     }
 }
 
@@ -262,6 +343,15 @@ impl PreparedClosure {
             Self::Glass(glass) => glass.classes(),
             Self::Refraction { rough, ior } => super::lobe::transmission_class(rough.alpha, *ior),
             Self::Principled(principled) => principled.classes(),
+        }
+    }
+
+    /// True when refracted light passes.
+    fn transmits(&self) -> bool {
+        match self {
+            Self::Glossy { .. } => false,
+            Self::Glass(_) | Self::Refraction { .. } => true,
+            Self::Principled(principled) => principled.transmits(),
         }
     }
 
@@ -311,9 +401,13 @@ impl MaterialTable {
     pub fn build(materials: &[Material]) -> Self {
         let mut problems = Vec::new();
         let materials: Vec<_> = materials.iter().map(|m| PreparedMaterial::new(m, &mut problems)).collect();
-        let closures = || materials.iter().flat_map(|m| &m.closures);
-        if closures().next().is_some() {
-            energy_table::prepare(&closures().flat_map(|(_, closure)| closure.etas()).collect::<Vec<_>>());
+        let needs_tables =
+            |m: &PreparedMaterial| !m.closures.is_empty() || m.varying().is_some_and(|v| !v.is_lambert());
+        if materials.iter().any(needs_tables) {
+            energy_table::prepare(&materials.iter().flat_map(|m| &m.etas).copied().collect::<Vec<_>>());
+        }
+        if materials.iter().filter_map(PreparedMaterial::varying).any(Varying::bends_differently) {
+            energy_table::prepare_all();
         }
         Self { materials, problems }
     }

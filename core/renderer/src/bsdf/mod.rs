@@ -26,8 +26,10 @@ mod principled;
 mod reflection;
 mod rough;
 mod sanitize;
+mod varying;
 
-use std::ops::BitOr;
+use std::ops::{BitOr, Deref};
+use std::sync::Arc;
 
 use glam::Vec3;
 use smallvec::SmallVec;
@@ -37,6 +39,7 @@ use crate::math::Side;
 use lobe::Lobe;
 pub use lobe::{DELTA_ALPHA, ROUGH_ALPHA};
 pub use material::{MaterialTable, PreparedMaterial};
+pub use varying::Varying;
 
 /// Most lobes at one hit.
 const MAX_LOBES: usize = 16;
@@ -173,10 +176,29 @@ pub struct BsdfSample {
     pub eta_squared: f32,
 }
 
+/// A material of the scene, or one that holds at one hit alone.
+#[derive(Clone, Debug)]
+enum MaterialRef<'a> {
+    Shared(&'a PreparedMaterial),
+    Own(Arc<PreparedMaterial>),
+}
+
+impl Deref for MaterialRef<'_> {
+    type Target = PreparedMaterial;
+
+    #[inline]
+    fn deref(&self) -> &PreparedMaterial {
+        match self {
+            Self::Shared(material) => material,
+            Self::Own(material) => material,
+        }
+    }
+}
+
 /// The BSDF at one hit for one `wo`, made by [`PreparedMaterial::bsdf`].
 #[derive(Clone, Debug)]
 pub struct Bsdf<'a> {
-    material: &'a PreparedMaterial,
+    material: MaterialRef<'a>,
     wo: Vec3,
     lobes: LobeList,
     /// Radiance emitted towards `wo` (W·m⁻²·sr⁻¹).
@@ -214,6 +236,13 @@ impl Bsdf<'_> {
     #[must_use]
     pub fn albedo(&self, set: LobeSet) -> Rgb {
         self.lobes(set).map(|lobe| lobe.albedo).sum()
+    }
+
+    /// Color at normal incidence of the lobes of class [`LobeSet::ROUGH`], at least 0.02. Direction bins hold radiance
+    /// divided by it.
+    #[must_use]
+    pub fn specular_tint(&self) -> Rgb {
+        self.material.specular_tint()
     }
 
     /// What irradiance (W·m⁻²) on this side, divided by π, is multiplied with to get the radiance towards `wo` of the
@@ -333,7 +362,7 @@ impl Bsdf<'_> {
     /// The same hit seen from `wi`.
     fn adjoint(&self, wi: Vec3) -> Self {
         let [ng, ns] = self.frame.unturned();
-        self.material.bsdf(wi, ng, ns)
+        self.material.clone().bsdf(wi, ng, ns)
     }
 
     /// What photons need where shading and geometric normal differ: |wo·ns| |wi·ng| / (|wo·ng| |wi·ns|).

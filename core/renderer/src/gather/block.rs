@@ -16,13 +16,13 @@ use crate::sampling::{PixelSeeds, Rng, hash};
 use crate::scene::visibility;
 use crate::settings::GatherSampling;
 
-use super::Gatherer;
 use super::camera::camera_ray;
 use super::deferred::{Deferred, Target, Traces};
 use super::direct::{ShadowRay, Shares, lambert_shadow_ray, shadow_ray, transmittance};
 use super::lambert::LambertLanes;
 use super::path::Sampled;
 use super::vertex::{GatherRay, Vertex, rotate};
+use super::{Gatherer, Width};
 
 /// One block in so many is clocked, to tell what each effect costs.
 const CLOCKED: u64 = 64;
@@ -140,12 +140,19 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let g = self.gatherer;
         let Some(hit) = hit.filter(|hit| !g.lit.accel.is_lamp(hit.object)) else { return false };
         let (ng, material) = g.lit.accel.triangle(hit.object, hit.primitive);
-        let Some(albedo_over_pi) = g.plain[material].filter(|_| g.sampling == GatherSampling::Cosine) else {
+        if g.sampling != GatherSampling::Cosine {
             return false;
+        }
+        let albedo = match g.plain[material] {
+            Some(albedo_over_pi) => albedo_over_pi * PI,
+            None => match g.lit.varying_albedo(material, ray, &hit, g.camera_width.at(hit.t)) {
+                Some(albedo) => albedo,
+                None => return false,
+            },
         };
         let frame = g.lit.frame(ray, &hit, ng);
         let p = ray.origin + ray.direction * hit.t;
-        self.lambert.put(lane, p, frame.ng, frame.ns, albedo_over_pi * PI);
+        self.lambert.put(lane, p, frame.ng, frame.ns, albedo);
         self.samples[lane].alpha = 1.0;
         true
     }
@@ -153,13 +160,9 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     fn follow_camera(&mut self, lane: usize, mut ray: Ray, hit: Option<Hit>) {
         let g = self.gatherer;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.sample) << 16 | 1));
-        let mut sampled = Sampled {
-            pdf: None,
-            shares: Shares::EVEN,
-            kind: visibility::CAMERA,
-            light: None,
-            lit_side: None,
-        };
+        let (kind, width) = (visibility::CAMERA, g.camera_width);
+        let mut sampled =
+            Sampled { pdf: None, shares: Shares::EVEN, kind, light: None, lit_side: None, width };
         let owner = self.traces.meter.owner();
         let (mut first, mut throughput) = (Some(hit), Rgb::WHITE);
         let transparent_film = g.lit.accel.scene().world.film_transparent;
@@ -184,6 +187,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             self.traces.meter.count(Effect::MirrorsAndGlass, 1);
             throughput *= sample.weight;
             sampled.kind = ray_kind(&sample);
+            sampled.width.start = sampled.width.at(met.distance);
             ray = Ray::leaving(surface.p, surface.ng, sample.wi, sampled.kind | g.lit.accel.lamp_bit());
             self.traces.rays.camera += 1;
         }
@@ -370,8 +374,9 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             Some(vertex) => vertex.surface.bsdf.lit_side(),
             None => Some(self.lambert.ns[lane]),
         };
-        let sampled =
-            Sampled { pdf: gather_ray.pdf, shares: g.shares, kind: gather_ray.kind, light, lit_side };
+        let width = Width::of_solid_angle(solid_angle);
+        let (pdf, kind) = (gather_ray.pdf, gather_ray.kind);
+        let sampled = Sampled { pdf, shares: g.shares, kind, light, lit_side, width };
         let met = g.meet(self.packet.ray(lane), Some(hit), sampled, &mut rng, &mut self.traces.meter);
         let sample = &mut self.samples[lane];
         // What a mirror shows is no direct light, though it belongs to the same layer of the picture.

@@ -129,7 +129,7 @@ fn transparencies(lit: &LitScene<'_>, shadow: &ShadowRay, rays: &mut u64, meter:
     for _ in 0..MAX_TRANSPARENT {
         *rays += 1;
         let Some(hit) = lit.accel.intersect(&ray).filter(|hit| hit.t < left) else { return through };
-        let surface = lit.surface(&ray, hit);
+        let surface = lit.surface(&ray, hit, 0.0);
         through *= surface.bsdf.transparency;
         if through.is_black() {
             return through;

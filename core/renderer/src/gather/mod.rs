@@ -28,7 +28,7 @@ use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
 use crate::accel::Ray;
-use crate::bsdf::{LobeSet, TransportMode};
+use crate::bsdf::{LobeSet, PreparedMaterial, TransportMode, Varying};
 use crate::color::Rgb;
 use crate::effects_plan::Costs;
 use crate::error::RenderError;
@@ -38,7 +38,7 @@ use crate::lit_scene::{LitScene, Surface, ray_kind};
 use crate::progress::Progress;
 use crate::pyramid::SETS;
 use crate::sampling::{Rng, StratifiedSet, hash};
-use crate::scene::visibility;
+use crate::scene::{Projection, visibility};
 use crate::settings::{GatherSampling, RenderSettings};
 use crate::stats::{RayCounts, StoppedBy};
 
@@ -78,6 +78,48 @@ pub struct Gatherer<'a, E> {
     plain: Vec<Option<Rgb>>,
     /// The same, where its light is read.
     plain_read: Vec<Option<Rgb>>,
+    /// By material: it is a Lambert reflector of an albedo that varies, whose light is read.
+    varying_lambert_read: Vec<bool>,
+    /// Of rays from the camera.
+    camera_width: Width,
+}
+
+fn is_varying_lambert(material: &PreparedMaterial) -> bool {
+    material.varying().is_some_and(Varying::is_lambert)
+}
+
+/// How wide a ray is (scene units): `start`, and so much more per distance.
+#[derive(Clone, Copy, Debug)]
+struct Width {
+    start: f32,
+    spread: f32,
+}
+
+impl Width {
+    /// That of a ray without extent.
+    const NONE: Self = Self { start: 0.0, spread: 0.0 };
+
+    /// Of a ray that stands for a solid angle.
+    fn of_solid_angle(solid_angle: f32) -> Self {
+        Self { start: 0.0, spread: solid_angle.sqrt() }
+    }
+
+    fn at(self, distance: f32) -> f32 {
+        self.start + self.spread * distance
+    }
+}
+
+/// The width of a camera sample: a pixel's area, dealt out to its samples.
+#[expect(clippy::cast_possible_truncation, reason = "widths need no more than f32")]
+fn camera_width(lit: &LitScene<'_>, camera_samples: u32) -> Width {
+    let camera = &lit.accel.scene().camera;
+    let [left, right, ..] = camera.window;
+    let pixel = (right - left).abs() / f64::from(camera.resolution[0]);
+    let share = (pixel / f64::from(camera_samples).sqrt()) as f32;
+    match camera.projection {
+        Projection::Perspective => Width { start: 0.0, spread: share },
+        Projection::Orthographic => Width { start: share, spread: 0.0 },
+    }
 }
 
 impl<'a, E: Estimator> Gatherer<'a, E> {
@@ -115,6 +157,12 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             widest: widest_stratum(gather.rays),
             plain_read: if reads_diffuse { plain.clone() } else { vec![None; plain.len()] },
             plain,
+            varying_lambert_read: lit
+                .materials
+                .iter()
+                .map(|m| reads_diffuse && is_varying_lambert(m))
+                .collect(),
+            camera_width: camera_width(lit, gather.camera_samples),
         }
     }
 
@@ -274,7 +322,7 @@ fn first_scatterer<'a>(
     ray.mask &= !visibility::LAMP;
     for _ in 0..max_depth {
         let hit = lit.accel.intersect(&ray)?;
-        let surface = lit.surface(&ray, hit);
+        let surface = lit.surface(&ray, hit, 0.0);
         if rng.draw() < surface.bsdf.transparency.mean() {
             ray = Ray::leaving(surface.p, surface.ng, ray.direction, ray.mask);
         } else if surface.bsdf.has(LobeSet::NON_DELTA) {

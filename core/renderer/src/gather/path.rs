@@ -15,9 +15,9 @@ use crate::lit_scene::{Surface, ray_kind};
 use crate::sampling::Rng;
 use crate::scene::visibility;
 
-use super::Gatherer;
 use super::deferred::{Target, Traces};
 use super::direct::{Shares, shadow_ray, transmittance};
+use super::{Gatherer, Width};
 
 /// Transparent surfaces a ray passes before it ends.
 const MAX_TRANSPARENT: u32 = 64;
@@ -38,6 +38,8 @@ pub(super) struct Sampled {
     pub(super) light: Option<Effect>,
     /// [`Bsdf::lit_side`](crate::bsdf::Bsdf::lit_side) of the surface it left.
     pub(super) lit_side: Option<Vec3>,
+    /// How wide the ray is.
+    pub(super) width: Width,
 }
 
 impl Sampled {
@@ -104,8 +106,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 met.light += met.through * self.escaped(from, ray.direction, sampled);
                 return met;
             };
-            let surface = lit.surface(&ray, hit);
             met.distance += hit.t;
+            let surface = lit.surface(&ray, hit, sampled.width.at(met.distance));
             if !surface.bsdf.emission.is_black() {
                 let owner = meter.enter(Effect::EmissiveMeshes);
                 let (direction, distance) = (ray.direction, met.distance);
@@ -203,7 +205,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             }
             let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
             let lit_side = surface.bsdf.lit_side();
-            let sampled = Sampled { pdf, shares: Shares::EVEN, kind, light, lit_side };
+            let sampled = Sampled { pdf, shares: Shares::EVEN, kind, light, lit_side, width: Width::NONE };
             let met = self.meet(ray, Some(hit), sampled, rng, &mut target.traces.meter);
             if light.is_some() {
                 radiance += throughput * met.light;

@@ -6,24 +6,23 @@ use crate::accel::LANES;
 use crate::bsdf::LobeSet;
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
-use crate::lit_scene::{LitScene, Surface};
+use crate::lit_scene::Surface;
 use crate::math::Side;
 use crate::pyramid::{Place, View};
 use crate::sampling::Rng;
 
 /// Reads a finished pyramid as one set of photons filled it.
 pub struct PyramidLookup<'a> {
-    lit: &'a LitScene<'a>,
     pyramid: View<'a>,
     /// Rays shorter than this many cells are followed.
     retrace_distance: f32,
 }
 
 impl<'a> PyramidLookup<'a> {
-    /// Look-ups in `pyramid`, which was built for `lit`; rays shorter than `retrace_distance` cells are followed.
+    /// Look-ups in `pyramid`; rays shorter than `retrace_distance` cells are followed.
     #[must_use]
-    pub const fn new(lit: &'a LitScene<'a>, pyramid: View<'a>, retrace_distance: f32) -> Self {
-        Self { lit, pyramid, retrace_distance }
+    pub const fn new(pyramid: View<'a>, retrace_distance: f32) -> Self {
+        Self { pyramid, retrace_distance }
     }
 
     /// True where a look-up would read a cell that the ray's start may lie in, or where a mirror-like ray would see cells.
@@ -78,8 +77,7 @@ impl Estimator for PyramidLookup<'_> {
             radiance += bsdf.diffuse_albedo() * irradiance * std::f32::consts::FRAC_1_PI;
         }
         if bsdf.has(LobeSet::ROUGH) {
-            let material = self.lit.accel.material(surface.hit.object, surface.hit.primitive);
-            let tint = self.lit.materials[material].specular_tint();
+            let tint = surface.bsdf.specular_tint();
             let shift = [rng.draw() - 0.5, rng.draw() - 0.5];
             if lobes.intersects(LobeSet::ROUGH) {
                 radiance += tint * self.pyramid.glossy_radiance(surface.p, class, level, bsdf.wo(), shift);

@@ -3,21 +3,19 @@
 use crate::bsdf::Bsdf;
 use crate::color::Rgb;
 use crate::estimator::{Landing, PhotonSink};
-use crate::lit_scene::LitScene;
 use crate::pyramid::{self, Accumulator, Lanes, Leaving};
 
 /// Deposits photons where they land.
 pub struct PyramidDeposits<'a> {
-    lit: &'a LitScene<'a>,
     accumulator: &'a Accumulator<'a>,
     instructions: pulp::Arch,
 }
 
 impl<'a> PyramidDeposits<'a> {
-    /// Deposits photons of `lit` in `accumulator`.
+    /// Deposits photons in `accumulator`.
     #[must_use]
-    pub fn new(lit: &'a LitScene<'a>, accumulator: &'a Accumulator<'a>) -> Self {
-        Self { lit, accumulator, instructions: pulp::Arch::new() }
+    pub fn new(accumulator: &'a Accumulator<'a>) -> Self {
+        Self { accumulator, instructions: pulp::Arch::new() }
     }
 }
 
@@ -29,8 +27,7 @@ impl PhotonSink for PyramidDeposits<'_> {
         let (surface, flux) = (landing.surface, landing.flux);
         let cell = self.accumulator.deposit(landing.set, surface.p, surface.bsdf.frame.side(), flux);
         let Some(cell) = cell.filter(|_| landing.glossy) else { return };
-        let material = self.lit.accel.material(surface.hit.object, surface.hit.primitive);
-        let tint = self.lit.materials[material].specular_tint();
+        let tint = surface.bsdf.specular_tint();
         let tinted = Rgb([0, 1, 2].map(|c| flux.0[c] / tint.0[c]));
         let (accumulator, bsdf, at) = (self.accumulator, &surface.bsdf, landing.at);
         self.instructions.dispatch(GlossyDeposit { accumulator, cell, bsdf, tinted, at });

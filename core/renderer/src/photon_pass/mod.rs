@@ -156,7 +156,7 @@ impl<S: PhotonSink> Tracer<'_, S> {
         let mut segments = 0;
         let Arrival { mut ray, mut hit, mut flux, mut lobes } = arrival;
         for _ in 0..self.max_depth {
-            let surface = self.lit.surface(&ray, hit);
+            let surface = self.lit.surface(&ray, hit, 0.0);
             let bsdf = &surface.bsdf;
             if bsdf.has(lobes.and(LobeSet::READ)) {
                 let glossy = bsdf.has(lobes.and(LobeSet::ROUGH));

@@ -6,10 +6,15 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat4, DVec3, Vec3};
 
 use super::mesh::{self, MeshArrays};
-use super::record::{CameraRecord, LampRecord, LampShape, MaterialRecord, WorldRecord, matrix, visibility};
-use super::{Camera, Lamp, Material, Mesh, Object, Problem, Projection, Scene, SceneSpace, World};
+use super::record::{
+    CameraRecord, LampRecord, LampShape, MaterialRecord, ObjectInfo, WorldRecord, matrix, visibility,
+};
+use super::{
+    Camera, Lamp, Material, MaterialProgram, Mesh, Object, Problem, Projection, Scene, SceneSpace, World,
+};
 use crate::color::Rgb;
 use crate::error::RenderError;
+use crate::shader::{Program, Texture};
 
 #[derive(Debug)]
 struct ObjectRecord {
@@ -18,6 +23,7 @@ struct ObjectRecord {
     world_from_object: DAffine3,
     materials: Vec<u32>,
     visibility: u32,
+    info: ObjectInfo,
 }
 
 /// Takes the parts of a scene in any order.
@@ -26,6 +32,7 @@ pub struct SceneBuilder {
     meshes: Vec<MeshArrays>,
     objects: Vec<ObjectRecord>,
     materials: Vec<MaterialRecord>,
+    textures: Vec<Texture>,
     lamps: Vec<LampRecord>,
     camera: Option<CameraRecord>,
     world: WorldRecord,
@@ -54,6 +61,12 @@ impl SceneBuilder {
     pub fn add_material(&mut self, record: MaterialRecord) -> usize {
         self.materials.push(record);
         self.materials.len() - 1
+    }
+
+    /// Adds an image for programs to look up, and returns its index.
+    pub fn add_texture(&mut self, texture: Texture) -> usize {
+        self.textures.push(texture);
+        self.textures.len() - 1
     }
 
     /// Adds a mesh and returns its index. Bad triangles are dropped and reported.
@@ -95,8 +108,18 @@ impl SceneBuilder {
             world_from_object: transform,
             materials,
             visibility: visible_to & visibility::ALL,
+            info: ObjectInfo::default(),
         });
         Ok(self.objects.len() - 1)
+    }
+
+    /// Says what materials may ask about an object.
+    ///
+    /// # Errors
+    /// An object that does not exist.
+    pub fn set_object_info(&mut self, object: usize, info: ObjectInfo) -> Result<(), RenderError> {
+        let known = self.objects.get_mut(object).map(|object| object.info = info);
+        known.ok_or_else(|| RenderError::Scene(format!("there is no object {object}")))
     }
 
     /// Adds a lamp and returns its index.
@@ -118,7 +141,7 @@ impl SceneBuilder {
     /// Checks everything and moves it into scene space.
     ///
     /// # Errors
-    /// No camera, or a camera that cannot see.
+    /// No camera, or a camera that cannot see; a material whose program cannot be run.
     pub fn finish(mut self) -> Result<Scene, RenderError> {
         let camera = self.camera.take().ok_or_else(|| {
             RenderError::Scene("the scene has no camera; add one and make it the active camera".into())
@@ -128,7 +151,7 @@ impl SceneBuilder {
         let camera = place_camera(&camera, &space)?;
         let lamps = self.place_lamps(&space);
         let objects = self.place_objects(&space);
-        let materials = self.take_materials();
+        let materials = self.take_materials()?;
         let bounds = bounds_of(&objects);
         let mut world = World {
             radiance: self.world.radiance.map(|c| c.max(0.0)),
@@ -143,7 +166,8 @@ impl SceneBuilder {
             self.problems.add("Scene", "there is no surface to render; only the background is drawn", 1);
         }
         let problems = self.problems.into_list();
-        Ok(Scene { space, objects, materials, lamps, camera, world, bounds, problems })
+        let textures = self.textures;
+        Ok(Scene { space, objects, materials, textures, lamps, camera, world, bounds, problems })
     }
 
     fn keep_usable_objects(&mut self) {
@@ -213,6 +237,8 @@ impl SceneBuilder {
                 name: object.name,
                 mesh,
                 scene_from_mesh,
+                object_from_scene: transform.inverse(),
+                info: object.info,
                 materials: object.materials,
                 visibility: object.visibility,
             });
@@ -234,10 +260,30 @@ impl SceneBuilder {
         lamps
     }
 
-    fn take_materials(&mut self) -> Vec<Material> {
+    fn take_materials(&mut self) -> Result<Vec<Material>, RenderError> {
+        let textures = self.textures.len();
         let records = std::mem::take(&mut self.materials).into_iter();
-        records.map(|record| Material { name: record.name, closures: record.closures }).collect()
+        records.map(|record| checked_material(record, textures)).collect()
     }
+}
+
+fn checked_material(record: MaterialRecord, textures: usize) -> Result<Material, RenderError> {
+    let MaterialRecord { name, mut closures, program } = record;
+    let Some(record) = program else { return Ok(Material { name, closures, program: None }) };
+    let fault = |what: String| RenderError::Scene(format!("material '{name}': {what}"));
+    let program = Program::new(record.instructions, textures).map_err(fault)?;
+    for output in &record.outputs {
+        let closure = closures.get_mut(output.closure);
+        if closure.and_then(|closure| closure.input_mut(output.input)).is_none() {
+            return Err(fault(format!("closure {} has no input {:?}", output.closure, output.input)));
+        }
+    }
+    let registers = record.outputs.iter().map(|output| output.register).chain(record.normal);
+    if let Some(register) = registers.into_iter().find(|&register| register as usize >= program.len()) {
+        return Err(fault(format!("its program has no register {register}")));
+    }
+    let program = MaterialProgram { program, outputs: record.outputs, normal: record.normal };
+    Ok(Material { name, closures, program: Some(program) })
 }
 
 fn place_camera(record: &CameraRecord, space: &SceneSpace) -> Result<Camera, RenderError> {

@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
-use super::Mesh;
 use super::builder::Problems;
+use super::{CornerLayer, Mesh};
 use crate::error::RenderError;
 
 /// A mesh in its object's space, as the host hands it over.
@@ -17,8 +17,8 @@ pub struct MeshArrays {
     pub triangles: Vec<[u32; 3]>,
     /// Normal at each corner of each triangle; empty: flat.
     pub corner_normals: Vec<[[f32; 3]; 3]>,
-    /// Texture coordinates at each corner of each triangle; empty: none.
-    pub corner_uvs: Vec<[[f32; 2]; 3]>,
+    /// Values at the corners that materials ask for: texture coordinates, colors.
+    pub layers: Vec<CornerLayer>,
     /// Material slot of each triangle; empty: slot 0.
     pub slots: Vec<u16>,
 }
@@ -27,13 +27,20 @@ impl MeshArrays {
     pub(super) fn check_lengths(&self) -> Result<(), RenderError> {
         let fault = |what: String| Err(RenderError::Scene(format!("mesh '{}': {what}", self.name)));
         let count = self.triangles.len();
-        for (len, what) in [
-            (self.corner_normals.len(), "corner normals"),
-            (self.corner_uvs.len(), "corner UVs"),
-            (self.slots.len(), "material slots"),
-        ] {
+        for (len, what) in
+            [(self.corner_normals.len(), "corner normals"), (self.slots.len(), "material slots")]
+        {
             if len != 0 && len != count {
                 return fault(format!("{len} {what} for {count} triangles"));
+            }
+        }
+        for layer in &self.layers {
+            if !(1..=4).contains(&layer.channels) || layer.values.len() != count * 3 * layer.channels {
+                return fault(format!(
+                    "{} values of {} channels for the corners of {count} triangles",
+                    layer.values.len(),
+                    layer.channels
+                ));
             }
         }
         let vertices = self.positions.len();
@@ -64,7 +71,7 @@ impl MeshArrays {
         if not_finite + no_area > 0 {
             retain(&mut self.triangles, &keep);
             retain(&mut self.corner_normals, &keep);
-            retain(&mut self.corner_uvs, &keep);
+            self.layers.iter_mut().for_each(|layer| layer.retain(&keep));
             retain(&mut self.slots, &keep);
         }
         let mut used = vec![false; self.positions.len()];
@@ -116,7 +123,7 @@ pub(super) fn transformed(arrays: MeshArrays, scene_from_object: &DAffine3, prob
     if scene_from_object.matrix3.determinant() < 0.0 {
         mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
         mesh.corner_normals.iter_mut().for_each(|n| n.swap(1, 2));
-        mesh.corner_uvs.iter_mut().for_each(|uv| uv.swap(1, 2));
+        mesh.layers.iter_mut().for_each(CornerLayer::turn);
     }
     // Rounding to f32 can flatten what was a triangle in the object's own space.
     let keep: Vec<bool> =
@@ -126,7 +133,7 @@ pub(super) fn transformed(arrays: MeshArrays, scene_from_object: &DAffine3, prob
         problems.add("Scene", "triangles too small beside the scene's size are left out", lost);
         retain(&mut mesh.triangles, &keep);
         retain(&mut mesh.corner_normals, &keep);
-        retain(&mut mesh.corner_uvs, &keep);
+        mesh.layers.iter_mut().for_each(|layer| layer.retain(&keep));
         retain(&mut mesh.slots, &keep);
     }
     mesh
@@ -159,7 +166,7 @@ fn placed(arrays: MeshArrays, transform: &DAffine3) -> Mesh {
             .collect(),
         triangles: arrays.triangles,
         corner_normals: arrays.corner_normals.into_iter().map(|corners| corners.map(normal)).collect(),
-        corner_uvs: arrays.corner_uvs,
+        layers: arrays.layers,
         slots: arrays.slots,
     }
 }

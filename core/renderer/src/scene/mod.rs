@@ -5,6 +5,7 @@
 //! by the square of the length scale, so that power over squared distance still is irradiance in W·m⁻².
 
 mod builder;
+mod layer;
 mod mesh;
 pub mod record;
 
@@ -13,11 +14,13 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3, Vec3};
 
 pub use builder::SceneBuilder;
+pub use layer::CornerLayer;
 pub use mesh::MeshArrays;
-pub use record::{LampShape, Projection, visibility};
+pub use record::{LampShape, ObjectInfo, Projection, visibility};
 
 use crate::color::Rgb;
-use record::WeightedClosure;
+use crate::shader::{Program, Register, Texture};
+use record::{OutputRecord, WeightedClosure};
 
 /// Where scene space lies in the world: `p_scene = (p_world - center) * scale`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,8 +48,8 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Shading normal at each corner of each triangle; empty means flat.
     pub corner_normals: Vec<[Vec3; 3]>,
-    /// Texture coordinates at each corner of each triangle; empty where the mesh has none.
-    pub corner_uvs: Vec<[[f32; 2]; 3]>,
+    /// Values at the corners that materials ask for.
+    pub layers: Vec<CornerLayer>,
     /// Material slot of each triangle; empty means slot 0 everywhere.
     pub slots: Vec<u16>,
 }
@@ -74,6 +77,10 @@ pub struct Object {
     pub mesh: Arc<Mesh>,
     /// Transform into scene space; `None` where the mesh already is in scene space (used once).
     pub scene_from_mesh: Option<DAffine3>,
+    /// Scene space to the object's own.
+    pub object_from_scene: DAffine3,
+    /// What materials may ask about the object.
+    pub info: ObjectInfo,
     /// Index into [`Scene::materials`] for each slot; never empty.
     pub materials: Vec<u32>,
     /// Ray kinds that see it, see [`visibility`].
@@ -104,8 +111,21 @@ impl Object {
 pub struct Material {
     /// Blender's name, for messages.
     pub name: String,
-    /// Weighted sum of closures.
+    /// Weighted sum of closures. Inputs that vary over the surface hold a typical value here.
     pub closures: Vec<WeightedClosure>,
+    /// What computes the inputs that vary.
+    pub program: Option<MaterialProgram>,
+}
+
+/// The part of a surface shader that differs from point to point.
+#[derive(Debug, Clone)]
+pub struct MaterialProgram {
+    /// What is computed.
+    pub program: Program,
+    /// Which results are inputs of which closures.
+    pub outputs: Vec<OutputRecord>,
+    /// The result that is the shading normal.
+    pub normal: Option<Register>,
 }
 
 /// A lamp in scene space.
@@ -181,6 +201,8 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// Materials.
     pub materials: Vec<Material>,
+    /// Images that programs look up.
+    pub textures: Vec<Texture>,
     /// Lamps of non-zero power.
     pub lamps: Vec<Lamp>,
     /// Camera.

@@ -5,6 +5,7 @@ use glam::DMat4;
 use serde::Deserialize;
 
 use crate::color::Rgb;
+use crate::shader::{Instruction, Register};
 
 /// Ray kinds an object can be hidden from; the bits are Embree's ray mask.
 pub mod visibility {
@@ -93,6 +94,29 @@ pub struct PrincipledRecord {
     pub emission_strength: f32,
 }
 
+impl PrincipledRecord {
+    fn input_mut(&mut self, input: Input) -> Option<InputMut<'_>> {
+        use InputMut::{Color, Number};
+        Some(match input {
+            Input::BaseColor => Color(&mut self.base_color),
+            Input::Metallic => Number(&mut self.metallic),
+            Input::Roughness => Number(&mut self.roughness),
+            Input::Ior => Number(&mut self.ior),
+            Input::Alpha => Number(&mut self.alpha),
+            Input::SpecularIorLevel => Number(&mut self.specular_ior_level),
+            Input::SpecularTint => Color(&mut self.specular_tint),
+            Input::TransmissionWeight => Number(&mut self.transmission_weight),
+            Input::CoatWeight => Number(&mut self.coat_weight),
+            Input::CoatRoughness => Number(&mut self.coat_roughness),
+            Input::CoatIor => Number(&mut self.coat_ior),
+            Input::CoatTint => Color(&mut self.coat_tint),
+            Input::EmissionColor => Color(&mut self.emission_color),
+            Input::EmissionStrength => Number(&mut self.emission_strength),
+            Input::Weight | Input::Color | Input::Radiance => return None,
+        })
+    }
+}
+
 impl Default for PrincipledRecord {
     fn default() -> Self {
         Self {
@@ -130,8 +154,97 @@ pub struct WeightedClosure {
 pub struct MaterialRecord {
     /// Blender's name, for messages.
     pub name: String,
-    /// Weighted sum of closures; empty is a black surface.
+    /// Weighted sum of closures; empty is a black surface. Inputs that vary hold a typical value.
     pub closures: Vec<WeightedClosure>,
+    /// What computes the inputs that vary.
+    #[serde(default)]
+    pub program: Option<ProgramRecord>,
+}
+
+/// Inputs of closures that differ from point to point, and how they are computed.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProgramRecord {
+    /// What is computed; operands name earlier instructions.
+    pub instructions: Vec<Instruction>,
+    /// Which results are inputs.
+    pub outputs: Vec<OutputRecord>,
+    /// The result that is the shading normal (world space).
+    pub normal: Option<Register>,
+}
+
+/// A result that is an input of a closure.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OutputRecord {
+    /// Index of the closure.
+    pub closure: usize,
+    /// Which of its inputs.
+    pub input: Input,
+    /// The result.
+    pub register: Register,
+}
+
+/// Inputs of closures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "the names are those of the fields of the closures")]
+pub enum Input {
+    Weight,
+    Color,
+    Radiance,
+    Roughness,
+    Ior,
+    BaseColor,
+    Metallic,
+    Alpha,
+    SpecularIorLevel,
+    SpecularTint,
+    TransmissionWeight,
+    CoatWeight,
+    CoatRoughness,
+    CoatIor,
+    CoatTint,
+    EmissionColor,
+    EmissionStrength,
+}
+
+impl WeightedClosure {
+    /// The input's value, as a color or a number; `None` where the closure has no such input.
+    pub fn input_mut(&mut self, input: Input) -> Option<InputMut<'_>> {
+        use ClosureRecord as C;
+        use InputMut::{Color, Number};
+        if input == Input::Weight {
+            return Some(Color(&mut self.weight));
+        }
+        match (&mut self.closure, input) {
+            (
+                C::Diffuse { color }
+                | C::Transparent { color }
+                | C::Glossy { color, .. }
+                | C::Glass { color, .. }
+                | C::Refraction { color, .. },
+                Input::Color,
+            ) => Some(Color(color)),
+            (C::Emission { radiance }, Input::Radiance) => Some(Color(radiance)),
+            (
+                C::Glossy { roughness, .. } | C::Glass { roughness, .. } | C::Refraction { roughness, .. },
+                Input::Roughness,
+            ) => Some(Number(roughness)),
+            (C::Glass { ior, .. } | C::Refraction { ior, .. }, Input::Ior) => Some(Number(ior)),
+            (C::Principled(record), _) => record.input_mut(input),
+            _ => None,
+        }
+    }
+}
+
+/// An input of a closure.
+#[derive(Debug)]
+pub enum InputMut<'a> {
+    /// A color.
+    Color(&'a mut Rgb),
+    /// A number.
+    Number(&'a mut f32),
 }
 
 impl MaterialRecord {
@@ -139,7 +252,26 @@ impl MaterialRecord {
     #[must_use]
     pub fn default_gray() -> Self {
         let closure = ClosureRecord::Diffuse { color: Rgb::splat(0.8) };
-        Self { name: "Default".into(), closures: vec![WeightedClosure { weight: Rgb::WHITE, closure }] }
+        let closures = vec![WeightedClosure { weight: Rgb::WHITE, closure }];
+        Self { name: "Default".into(), closures, program: None }
+    }
+}
+
+/// What materials may ask about an object.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ObjectInfo {
+    /// Its color in the viewport, with alpha.
+    pub color: [f32; 4],
+    /// Its pass index.
+    pub index: f32,
+    /// A random number, 0 to 1.
+    pub random: f32,
+}
+
+impl Default for ObjectInfo {
+    fn default() -> Self {
+        Self { color: [1.0; 4], index: 0.0, random: 0.0 }
     }
 }
 

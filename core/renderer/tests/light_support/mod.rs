@@ -7,7 +7,8 @@ use glam::{DAffine3, DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::light::Lights;
 use rgp_renderer::scene::{
-    Camera, Lamp, LampShape, Material, Mesh, Object, Projection, Scene, SceneSpace, World, visibility,
+    Camera, Lamp, LampShape, Material, Mesh, Object, ObjectInfo, Projection, Scene, SceneSpace, World,
+    visibility,
 };
 
 /// A ray kind for look-ups: any one bit.
@@ -52,6 +53,8 @@ pub(crate) fn object(
         name: "object".into(),
         mesh: Arc::new(mesh),
         scene_from_mesh: place,
+        object_from_scene: DAffine3::IDENTITY,
+        info: ObjectInfo::default(),
         materials,
         visibility: visibility::ALL,
     }
@@ -59,11 +62,12 @@ pub(crate) fn object(
 
 /// A scene in the unit cube; its camera is never used.
 pub(crate) fn scene(lamps: Vec<Lamp>, objects: Vec<Object>, world_radiance: f32) -> Scene {
-    let material = Material { name: "material".into(), closures: Vec::new() };
+    let material = Material { name: "material".into(), closures: Vec::new(), program: None };
     Scene {
         space: SceneSpace { center: DVec3::ZERO, scale: 1.0 },
         objects,
         materials: vec![material; 8],
+        textures: Vec::new(),
         lamps,
         camera: Camera {
             projection: Projection::Perspective,

@@ -117,7 +117,11 @@ pub(crate) fn area(mesh: &MeshArrays) -> f64 {
 /// A material that is a sum of closures.
 pub(crate) fn material(closures: &[ClosureRecord]) -> MaterialRecord {
     let weighted = |closure: &ClosureRecord| WeightedClosure { weight: Rgb::WHITE, closure: closure.clone() };
-    MaterialRecord { name: "material".into(), closures: closures.iter().map(weighted).collect() }
+    MaterialRecord {
+        name: "material".into(),
+        closures: closures.iter().map(weighted).collect(),
+        program: None,
+    }
 }
 
 /// Lambert's reflector.

@@ -1,0 +1,186 @@
+//! Whatever a program is, it is refused with a message or runs to its end.
+
+use glam::{Vec3, Vec4};
+use proptest::prelude::{ProptestConfig, Strategy, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
+use rgp_renderer::shader::{
+    Aside, Encoding, Extension, Instruction, Interpolation, MOST_INSTRUCTIONS, NormalSpace, Pixels, Point,
+    Program, Quantity, Texture, Value,
+};
+use serde_json::{Value as Json, json};
+
+/// Answers every question with the same numbers.
+struct Anywhere(Vec4);
+
+impl Point for Anywhere {
+    fn attribute(&self, _attribute: u32, _aside: Aside) -> Value {
+        Value { v: self.0, width: self.0.w }
+    }
+
+    fn geometry(&self, _quantity: Quantity, _aside: Aside) -> Value {
+        Value { v: self.0, width: self.0.w }
+    }
+
+    fn steps(&self) -> [Vec3; 2] {
+        [Vec3::X * self.0.x, Vec3::Y]
+    }
+
+    fn tangents(&self, attribute: u32) -> Option<[Vec3; 3]> {
+        (attribute > 0).then_some([Vec3::X, Vec3::Y, Vec3::Z])
+    }
+
+    fn world_normal(&self, normal: Vec3) -> Vec3 {
+        normal
+    }
+}
+
+fn textures() -> Vec<Texture> {
+    let texels = (0..15).map(|i| [i as f32, 1.0, f32::MAX, 0.5]).collect();
+    vec![Texture::new([5, 3], Pixels::Floats(texels), Encoding::Linear).expect("fifteen texels")]
+}
+
+/// Instructions of every kind, their operands drawn from `r`.
+fn any_instruction(kind: usize, r: [u16; 10], x: [f32; 4]) -> Instruction {
+    let extension = ["repeat", "extend", "clip", "mirror"][r[1] as usize % 4];
+    let image = |op: &str, more: Json| {
+        let mut all = json!({"op": op, "texture": r[8] % 2, "vector": r[0], "extension": extension, "interpolation": "linear", "unassociate": true});
+        all.as_object_mut().expect("an object").extend(more.as_object().expect("an object").clone());
+        all
+    };
+    let maths =
+        ["POWER", "DIVIDE", "MODULO", "WRAP", "PINGPONG", "LOGARITHM", "SMOOTH_MIN", "SNAP", "TANGENT"];
+    let vectors = ["REFRACT", "PROJECT", "NORMALIZE", "MODULO", "WRAP", "DISTANCE", "DIVIDE", "POWER"];
+    let blends = ["BURN", "DODGE", "DIVIDE", "HUE", "SATURATION", "COLOR", "VALUE", "OVERLAY"];
+    let pick = |names: &[&str]| names[r[9] as usize % names.len()].to_owned();
+    let dimensions = r[8] % 6;
+    let patterns = [
+        (
+            json!({"kind": "noise", "dimensions": dimensions, "fractal": pick(&["FBM", "RIDGED_MULTIFRACTAL",
+            "HYBRID_MULTIFRACTAL", "MULTIFRACTAL", "HETERO_TERRAIN"]), "normalize": true, "color": true}),
+            9,
+        ),
+        (json!({"kind": "white_noise", "dimensions": dimensions, "color": true}), 2),
+        (
+            json!({"kind": "voronoi", "feature": pick(&["F1", "F2", "SMOOTH_F1", "DISTANCE_TO_EDGE"]),
+            "metric": pick(&["EUCLIDEAN", "MINKOWSKI"]), "flat": r[8].is_multiple_of(2), "output": "position"}),
+            5,
+        ),
+        (json!({"kind": "wave", "rings": true, "direction": "Z", "profile": "SAW"}), 7),
+        (json!({"kind": "magic", "depth": r[8] % 256}), 3),
+        (
+            json!({"kind": "brick", "offset": 0.5, "offset_frequency": r[8] % 3, "squash": 0.5,
+            "squash_frequency": r[7] % 3}),
+            10,
+        ),
+    ];
+    let (pattern, inputs) = &patterns[r[9] as usize % patterns.len()];
+    let record = match kind {
+        0 => json!({"op": "attribute", "attribute": r[0], "aside": "x"}),
+        1 => json!({"op": "mapping", "vector": r[0], "location": r[1], "rotation": r[2], "scale": r[3]}),
+        2 => image("image", json!({})),
+        3 => image("box_image", json!({"normal": r[2], "blend": 0.3})),
+        4 => json!({"op": "channel", "of": r[0], "channel": r[1] % 4}),
+        5 => json!({"op": "math", "function": pick(&maths), "a": r[0], "b": r[1], "c": r[2]}),
+        6 => json!({"op": "vector_math", "function": pick(&vectors), "a": r[0], "b": r[1], "c": r[2]}),
+        7 => json!({"op": "blend", "mode": pick(&blends), "factor": r[0], "a": r[1], "b": r[2]}),
+        8 => json!({"op": "clamp", "value": r[0], "low": r[1], "high": r[2]}),
+        9 => {
+            json!({"op": "ramp", "factor": r[0], "table": vec![[0.5; 4]; r[1] as usize % 4], "stepped": r[2] > 2})
+        }
+        10 => {
+            json!({"op": "curves", "color": r[0], "table": vec![[0.5; 4]; r[1] as usize % 4], "low": 0.0, "high": 0.0})
+        }
+        11 => json!({"op": "hue_saturation", "color": r[0], "hue": r[1], "saturation": r[2], "value": r[3]}),
+        12 => json!({"op": "bump", "strength": r[0], "distance": r[1], "height": r[2], "height_x": r[3],
+            "height_y": r[4], "normal": r[5], "invert": true}),
+        13 => json!({"op": "layer_weight", "blend": r[0], "normal": r[1], "facing": r[2] > 2}),
+        14 => json!({"op": "checker", "vector": r[0], "color1": r[1], "color2": r[2], "scale": r[3]}),
+        15 => json!({"op": "hsv_from_rgb", "color": r[0]}),
+        16 => json!({"op": "rgb_from_hsl", "color": r[0]}),
+        17 => json!({"op": "pattern", "pattern": pattern, "inputs": &r[..*inputs]}),
+        18 => {
+            let space = NormalSpace::Tangent;
+            return Instruction::NormalMap { color: r[0], strength: r[1], space, attribute: r[2].into() };
+        }
+        _ => return Instruction::Constant { value: x },
+    };
+    serde_json::from_value(record).expect("a record of an instruction")
+}
+
+fn any_number() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        -2.0_f32..2.0,
+        prop::sample::select(vec![0.0, 1.0, -1.0, 1e30, -1e30, f32::NAN, f32::INFINITY, f32::MIN_POSITIVE]),
+    ]
+}
+
+/// Kind, operands and numbers of each instruction.
+fn any_steps() -> impl Strategy<Value = Vec<(usize, [u16; 10], [f32; 4])>> {
+    let step = (0_usize..22, prop::array::uniform10(0_u16..8), prop::array::uniform4(any_number()));
+    prop::collection::vec(step, 1..12)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn no_program_fails(steps in any_steps(), at in prop::array::uniform4(any_number())) {
+        // Every program begins with constants, so that many are valid.
+        let first = (0..7).map(|i| Instruction::Constant { value: [at[i % 4], at[(i + 1) % 4], 0.5, 1.0] });
+        let rest = steps.into_iter().map(|(kind, r, x)| any_instruction(kind, r, x));
+        let instructions: Vec<_> = first.chain(rest).collect();
+        let count = instructions.len();
+        match Program::new(instructions, 1) {
+            Ok(program) => prop_assert_eq!(program.run(&Anywhere(at.into()), &textures()).len(), count),
+            Err(message) => prop_assert!(message.contains("instruction") || message.contains("dimensions")),
+        }
+    }
+}
+
+#[test]
+fn a_register_must_be_known_before_it_is_read() {
+    let constant = Instruction::Constant { value: [0.0; 4] };
+    let mean = |of| Instruction::Mean { of };
+    assert!(Program::new(vec![constant.clone(), mean(0)], 0).is_ok());
+    assert!(
+        Program::new(vec![constant.clone(), mean(1)], 0).is_err_and(|message| message.contains("register 1"))
+    );
+    assert!(Program::new(vec![mean(7), constant], 0).is_err_and(|message| message.contains("register 7")));
+}
+
+#[test]
+fn textures_and_tables_must_exist() {
+    let constant = Instruction::Constant { value: [0.0; 4] };
+    let (extension, interpolation) = (Extension::Repeat, Interpolation::Linear);
+    let image =
+        |texture| Instruction::Image { texture, vector: 0, extension, interpolation, unassociate: false };
+    assert!(Program::new(vec![constant.clone(), image(0)], 1).is_ok());
+    assert!(
+        Program::new(vec![constant.clone(), image(1)], 1)
+            .is_err_and(|message| message.contains("texture 1 of 1"))
+    );
+    let ramp = Instruction::Ramp { factor: 0, table: vec![[0.0; 4]], stepped: false };
+    assert!(
+        Program::new(vec![constant.clone(), ramp], 0).is_err_and(|message| message.contains("table of 1"))
+    );
+    assert!(
+        Program::new(vec![constant; MOST_INSTRUCTIONS + 1], 0)
+            .is_err_and(|message| message.contains("at most"))
+    );
+}
+
+#[test]
+fn widths_follow_the_arithmetic() {
+    let texel = |x: f32| Instruction::Constant { value: [x; 4] };
+    let step = Instruction::Attribute { attribute: 0, aside: Aside::Here };
+    let rows = [[4.0, 0.0, 0.0, 0.0], [0.0, 4.0, 0.0, 0.0], [0.0, 0.0, 4.0, 0.0]];
+    let program = vec![
+        step,
+        texel(3.0),
+        Instruction::Transform { vector: 0, rows },
+        Instruction::Mapping { vector: 0, location: 1, rotation: 1, scale: 1 },
+    ];
+    let program = Program::new(program, 0).expect("a program");
+    let found = program.run(&Anywhere(Vec4::new(0.5, 0.5, 0.5, 0.125)), &[]);
+    assert_eq!(found[1].width, 0.0);
+    assert!((found[2].width - 0.5).abs() < 1e-6 && (found[3].width - 0.375).abs() < 1e-6);
+}

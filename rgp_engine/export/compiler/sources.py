@@ -1,0 +1,242 @@
+"""Nodes that look at the hit: textures, coordinates, geometry, attributes."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from ..coordinates import matrix_array
+from ..nodes import Output
+from .images import texture_of, unassociates
+from .mapping import own_mapping
+
+if TYPE_CHECKING:
+    from .compiler import Compiler, Operand, Register
+
+_EXTENSIONS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
+
+
+def _image(c: "Compiler", source: Output) -> "Operand | None":
+    b_node = source.b_node
+    texture = texture_of(c, b_node)
+    if texture is None or b_node.projection not in ("FLAT", "BOX"):
+        return None
+    if b_node.interpolation not in ("Closest", "Linear"):
+        c.report_node(
+            b_node, f"{b_node.interpolation.lower()} interpolation is not supported yet; linear is used"
+        )
+    fields = {
+        "texture": texture,
+        "extension": _EXTENSIONS[b_node.extension],
+        "interpolation": "closest" if b_node.interpolation == "Closest" else "linear",
+        "unassociate": unassociates(b_node),
+    }
+    vector = own_mapping(c, b_node, c.input(source, "Vector") if c.linked(source, "Vector") else _uv(c))
+    if b_node.projection == "BOX":
+        normal = c.quantity("object_normal")
+        blend = float(b_node.projection_blend)
+        color = c.emit("box_image", vector=vector, normal=normal, blend=blend, **fields)
+    else:
+        color = c.emit("image", vector=vector, **fields)
+    return c.emit("alpha", of=color) if source.b_socket.identifier == "Alpha" else color
+
+
+def _uv(c: "Compiler") -> "Register":
+    return c.attribute("uv")
+
+
+def _uv_map(c: "Compiler", source: Output) -> "Operand | None":
+    b_node = source.b_node
+    if b_node.from_instancer:
+        return None
+    return c.attribute(f"uv:{b_node.uv_map}" if b_node.uv_map else "uv")
+
+
+def _texture_coordinate(c: "Compiler", source: Output) -> "Operand | None":
+    name = source.b_socket.identifier
+    if source.b_node.from_instancer and name in ("Generated", "UV"):
+        return None
+    if name == "Generated":
+        return c.attribute("generated")
+    if name == "UV":
+        return _uv(c)
+    if name == "Normal":
+        return c.quantity("object_normal")
+    if name == "Reflection":
+        return c.quantity("reflection")
+    if name == "Object":
+        b_object = source.b_node.object
+        if b_object is None:
+            return c.quantity("object_position")
+        return c.transformed(c.quantity("position"), _inverse_rows(b_object.matrix_world))
+    if name == "Camera":
+        return _camera_position(c)
+    return None
+
+
+def _camera_position(c: "Compiler") -> "Register":
+    """Position in the camera's space, z forwards."""
+    b_camera = c.context.b_depsgraph.scene_eval.camera
+    rows = _inverse_rows(b_camera.matrix_world.normalized())
+    rows[2] = [-x for x in rows[2]]
+    return c.transformed(c.quantity("position"), rows)
+
+
+def _inverse_rows(b_matrix: Any) -> list[list[float]]:
+    rows: list[list[float]] = matrix_array(b_matrix.inverted_safe())[:3].tolist()
+    return rows
+
+
+_GEOMETRY = {
+    "Position": "position",
+    "Normal": "normal",
+    "True Normal": "true_normal",
+    "Incoming": "incoming",
+    "Parametric": "parametric",
+    "Backfacing": "backfacing",
+}
+
+
+def _geometry(c: "Compiler", source: Output) -> "Operand | None":
+    name = _GEOMETRY.get(source.b_socket.identifier)
+    return None if name is None else c.quantity(name)
+
+
+_OBJECT_INFO = {
+    "Location": "object_location",
+    "Color": "object_color",
+    "Object Index": "object_index",
+    "Random": "object_random",
+}
+
+
+def _object_info(c: "Compiler", source: Output) -> "Operand | None":
+    name = source.b_socket.identifier
+    c.asks_object = True
+    if name == "Alpha":
+        return c.emit("alpha", of=c.quantity("object_color"))
+    known = _OBJECT_INFO.get(name)
+    return None if known is None else c.quantity(known)
+
+
+_LIGHT_PATH = {
+    "Is Camera Ray": "is_camera",
+    "Is Shadow Ray": "is_shadow",
+    "Is Diffuse Ray": "is_diffuse",
+    "Is Glossy Ray": "is_glossy",
+    "Is Transmission Ray": "is_transmission",
+}
+
+
+def _light_path(c: "Compiler", source: Output) -> "Operand | None":
+    name = _LIGHT_PATH.get(source.b_socket.identifier)
+    return None if name is None else c.quantity(name)
+
+
+def _attribute(c: "Compiler", source: Output) -> "Operand | None":
+    b_node = source.b_node
+    if b_node.attribute_type != "GEOMETRY" or not b_node.attribute_name:
+        return None
+    layer = c.attribute(f"attribute:{b_node.attribute_name}")
+    name = source.b_socket.identifier
+    if name == "Alpha":
+        return c.emit("alpha", of=layer)
+    return c.emit("mean", of=layer) if name == "Fac" else layer
+
+
+def _color_attribute(c: "Compiler", source: Output) -> "Operand | None":
+    name = source.b_node.layer_name
+    layer = c.attribute(f"attribute:{name}" if name else "color")
+    return c.emit("alpha", of=layer) if source.b_socket.identifier == "Alpha" else layer
+
+
+def _normal(c: "Compiler", source: Output) -> "Register":
+    """A node's own normal input; what is unlinked is the surface's."""
+    return c.input(source, "Normal") if c.linked(source, "Normal") else c.quantity("normal")
+
+
+def _fresnel(c: "Compiler", source: Output) -> "Operand | None":
+    return c.emit("fresnel", ior=c.input(source, "IOR"), normal=_normal(c, source))
+
+
+def _layer_weight(c: "Compiler", source: Output) -> "Operand | None":
+    facing = source.b_socket.identifier == "Facing"
+    return c.emit("layer_weight", blend=c.input(source, "Blend"), normal=_normal(c, source), facing=facing)
+
+
+def _normal_map(c: "Compiler", source: Output) -> "Operand | None":
+    b_node = source.b_node
+    space = {"TANGENT": "tangent", "OBJECT": "object", "WORLD": "world"}.get(b_node.space)
+    if space is None:
+        return None
+    layer = f"uv:{b_node.uv_map}" if b_node.uv_map else "uv"
+    if space == "tangent":
+        c.attributes.add(layer)
+    return c.emit(
+        "normal_map",
+        color=c.input(source, "Color"),
+        strength=c.input(source, "Strength"),
+        space=space,
+        attribute=c.context.attribute_number(layer),
+    )
+
+
+def heights(c: "Compiler", source: Output) -> "dict[str, Register]":
+    """The height of a node that tilts the normal: at the hit, and one step aside along two tangents."""
+    here = c.aside
+    found = {}
+    for name, aside in (("height", "here"), ("height_x", "x"), ("height_y", "y")):
+        c.aside = aside
+        found[name] = c.input(source, "Height")
+    c.aside = here
+    return found
+
+
+def _bump(c: "Compiler", source: Output) -> "Operand | None":
+    return c.emit(
+        "bump",
+        strength=c.input(source, "Strength"),
+        distance=c.input(source, "Distance"),
+        normal=_normal(c, source),
+        invert=bool(source.b_node.invert),
+        **heights(c, source),
+    )
+
+
+def _always(_c: "Compiler", _source: Output) -> bool:
+    return True
+
+
+def _known(emit: "Callable[[Compiler, Output], Operand | None]") -> "Callable[[Compiler, Output], bool]":
+    """For nodes that are sources where their use is known, and cost nothing to ask."""
+    return lambda c, source: emit(c, source) is not None
+
+
+NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
+    "TEX_IMAGE": _image,
+    "UVMAP": _uv_map,
+    "TEX_COORD": _texture_coordinate,
+    "NEW_GEOMETRY": _geometry,
+    "OBJECT_INFO": _object_info,
+    "LIGHT_PATH": _light_path,
+    "ATTRIBUTE": _attribute,
+    "VERTEX_COLOR": _color_attribute,
+    "FRESNEL": _fresnel,
+    "LAYER_WEIGHT": _layer_weight,
+    "NORMAL_MAP": _normal_map,
+    "BUMP": _bump,
+}
+"""Instructions of the nodes that look at the hit."""
+
+SOURCES: "dict[str, Callable[[Compiler, Output], bool]]" = {
+    **dict.fromkeys(("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP"), _always),
+    "TEX_IMAGE": lambda c, source: (
+        texture_of(c, source.b_node) is not None and source.b_node.projection in ("FLAT", "BOX")
+    ),
+    "UVMAP": _known(_uv_map),
+    "TEX_COORD": _known(_texture_coordinate),
+    "NEW_GEOMETRY": _known(_geometry),
+    "OBJECT_INFO": _known(_object_info),
+    "LIGHT_PATH": _known(_light_path),
+    "ATTRIBUTE": _known(_attribute),
+    "VERTEX_COLOR": _known(_color_attribute),
+}
+"""Whether a node looks at the hit; where not, it folds to a constant and is reported."""
