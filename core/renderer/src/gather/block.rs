@@ -167,13 +167,14 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let (mut first, mut throughput) = (Some(hit), Rgb::WHITE);
         let transparent_film = g.lit.accel.scene().world.film_transparent;
         for depth in 0..g.max_depth {
-            let met = g.meet(ray, first.take(), sampled, &mut rng, &mut self.traces.meter);
+            let mut end = None;
+            let met = g.meet(ray, first.take(), sampled, &mut rng, &mut self.traces.meter, &mut end);
             let sample = &mut self.samples[lane];
-            if met.surface.is_some() || depth > 0 || !transparent_film {
+            if end.is_some() || depth > 0 || !transparent_film {
                 sample.direct += throughput * met.light;
                 sample.alpha = 1.0;
             }
-            let Some(surface) = met.surface else { break };
+            let Some(surface) = end else { break };
             throughput *= met.through;
             if surface.bsdf.has(LobeSet::NON_DELTA) {
                 self.vertices[lane] = Some(Box::new(Vertex { surface, throughput }));
@@ -340,7 +341,18 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
                     weight[lane] = ray.weight * readable.reflectance;
                     read[lane] = true;
                 }
-                None => self.receive_other(lane, &ray, hit, solid_angle, index),
+                None => {
+                    let varying = hit
+                        .filter(|_| g.has_varying && !ray.sharp)
+                        .and_then(|hit| g.readable_varying(&self.packet.ray(lane), &hit, solid_angle));
+                    if let Some(readable) = varying {
+                        places[lane] = readable.place;
+                        weight[lane] = ray.weight * readable.reflectance;
+                        read[lane] = true;
+                    } else {
+                        self.receive_other(lane, &ray, hit, solid_angle, index);
+                    }
+                }
             }
         }
         if E::DEFERS {
@@ -377,17 +389,18 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let width = Width::of_solid_angle(solid_angle);
         let (pdf, kind) = (gather_ray.pdf, gather_ray.kind);
         let sampled = Sampled { pdf, shares: g.shares, kind, light, lit_side, width };
-        let met = g.meet(self.packet.ray(lane), Some(hit), sampled, &mut rng, &mut self.traces.meter);
+        let (ray, mut end) = (self.packet.ray(lane), None);
+        let met = g.meet(ray, Some(hit), sampled, &mut rng, &mut self.traces.meter, &mut end);
         let sample = &mut self.samples[lane];
         // What a mirror shows is no direct light, though it belongs to the same layer of the picture.
         if g.lit.plan.direct || gather_ray.pdf.is_none() {
             sample.direct += weight * met.light * g.direct_share;
         }
-        if let Some(surface) = met.surface.filter(|_| g.lit.plan.follows()) {
+        if end.is_some() && g.lit.plan.follows() {
             let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };
             let weight = weight * met.through;
             let target = Target { traces: &mut self.traces, lane, weight };
-            sample.indirect += weight * g.outgoing(surface, footprint, &mut rng, target);
+            sample.indirect += weight * g.outgoing(&mut end, footprint, &mut rng, target);
         }
     }
 }

@@ -80,6 +80,8 @@ pub struct Gatherer<'a, E> {
     plain_read: Vec<Option<Rgb>>,
     /// By material: it is a Lambert reflector of an albedo that varies, whose light is read.
     varying_lambert_read: Vec<bool>,
+    /// Whether there is one.
+    has_varying: bool,
     /// Of rays from the camera.
     camera_width: Width,
 }
@@ -135,6 +137,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         });
         let plain: Vec<Option<Rgb>> = plain.collect();
         let reads_diffuse = lit.plan.reads.intersects(LobeSet::DIFFUSE);
+        let varying_lambert_read: Vec<bool> =
+            lit.materials.iter().map(|material| reads_diffuse && is_varying_lambert(material)).collect();
         Self {
             lit,
             estimator,
@@ -157,11 +161,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             widest: widest_stratum(gather.rays),
             plain_read: if reads_diffuse { plain.clone() } else { vec![None; plain.len()] },
             plain,
-            varying_lambert_read: lit
-                .materials
-                .iter()
-                .map(|m| reads_diffuse && is_varying_lambert(m))
-                .collect(),
+            has_varying: varying_lambert_read.contains(&true),
+            varying_lambert_read,
             camera_width: camera_width(lit, gather.camera_samples),
         }
     }

@@ -48,13 +48,11 @@ impl Sampled {
     }
 }
 
-/// What a ray met.
+/// What a ray met, but for the surface at its end.
 #[derive(Debug)]
-pub(super) struct Met<'a> {
+pub(super) struct Met {
     /// Light from lamps, emissive surfaces and the world along the ray, weighted.
     pub(super) light: Rgb,
-    /// The surface at its end; `None` where it left the scene.
-    pub(super) surface: Option<Surface<'a>>,
     /// Length of the ray.
     pub(super) distance: f32,
     /// Share of light from the surface that arrives through what is transparent before it.
@@ -62,7 +60,8 @@ pub(super) struct Met<'a> {
 }
 
 impl<'a, E: Estimator> Gatherer<'a, E> {
-    /// Follows a ray to the surface it ends at. `first` is its first hit if that is known already.
+    /// Follows a ray to the surface it ends at, which goes into `end`: it is too large to be handed on by value. `first` is
+    /// the ray's first hit if that is known already.
     pub(super) fn meet(
         &self,
         ray: Ray,
@@ -70,9 +69,10 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         sampled: Sampled,
         rng: &mut Rng,
         meter: &mut Meter,
-    ) -> Met<'a> {
+        end: &mut Option<Surface<'a>>,
+    ) -> Met {
         let owner = meter.owner();
-        let met = self.meet_first(ray, first, sampled, rng, meter);
+        let met = self.meet_first(ray, first, sampled, rng, meter, end);
         meter.back(owner);
         met
     }
@@ -84,16 +84,18 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         sampled: Sampled,
         rng: &mut Rng,
         meter: &mut Meter,
-    ) -> Met<'a> {
-        let mut met = Met { light: Rgb::BLACK, surface: None, distance: 0.0, through: Rgb::WHITE };
+        end: &mut Option<Surface<'a>>,
+    ) -> Met {
+        *end = None;
+        let mut met = Met { light: Rgb::BLACK, distance: 0.0, through: Rgb::WHITE };
         let (from, lit) = (Receiver { p: ray.origin, normal: sampled.lit_side }, self.lit);
         let mut known = first;
         for _ in 0..MAX_TRANSPARENT {
             let mut hit = known.take().unwrap_or_else(|| lit.accel.intersect(&ray));
             if hit.is_some_and(|hit| lit.accel.is_lamp(hit.object)) {
                 hit = lit.accel.intersect(&Ray { mask: ray.mask & !visibility::LAMP, ..ray });
-                let end = hit.map_or(f32::INFINITY, |hit| met.distance + hit.t);
-                let (span, through) = (met.distance..end, met.through);
+                let until = hit.map_or(f32::INFINITY, |hit| met.distance + hit.t);
+                let (span, through) = (met.distance..until, met.through);
                 let owner = meter.enter_if(sampled.light);
                 lit.lights.lamps_crossed(from, ray.direction, span, sampled.kind, &mut |radiance, pdf| {
                     met.light += through * radiance * sampled.weight(pdf);
@@ -107,7 +109,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 return met;
             };
             met.distance += hit.t;
-            let surface = lit.surface(&ray, hit, sampled.width.at(met.distance));
+            let surface = end.insert(lit.surface(&ray, hit, sampled.width.at(met.distance)));
             if !surface.bsdf.emission.is_black() {
                 let owner = meter.enter(Effect::EmissiveMeshes);
                 let (direction, distance) = (ray.direction, met.distance);
@@ -119,11 +121,11 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             let chance = transparency.mean().clamp(0.0, 1.0);
             if chance <= 0.0 || rng.draw() >= chance {
                 met.through = met.through * (1.0 / (1.0 - chance).max(f32::MIN_POSITIVE));
-                met.surface = Some(surface);
                 return met;
             }
             met.through = met.through * transparency * (1.0 / chance);
             ray = Ray::leaving(surface.p, surface.ng, ray.direction, ray.mask);
+            *end = None;
             meter.enter(Effect::AlphaTransparency);
             meter.count(Effect::AlphaTransparency, 1);
         }
@@ -141,23 +143,23 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         light
     }
 
-    /// Radiance leaving `surface` towards where the ray came from, without its emission: read where the estimator allows,
-    /// followed where not. Look-ups that are deferred go to `target` instead.
+    /// Radiance leaving the surface `end` towards where the ray came from, without its emission: read where the estimator
+    /// allows, followed where not, from surface to surface. Look-ups that are deferred go to `target` instead.
     pub(super) fn outgoing(
         &self,
-        surface: Surface<'a>,
-        footprint: Footprint,
+        end: &mut Option<Surface<'a>>,
+        mut footprint: Footprint,
         rng: &mut Rng,
         mut target: Target<'_, E::Place>,
     ) -> Rgb {
         let mut radiance = Rgb::BLACK;
         let mut throughput = Rgb::WHITE;
-        let (mut surface, mut footprint) = (surface, footprint);
         // What light counts for that comes through mirrors and glass: caustics, or the look-up that a followed vertex replaces.
         let mut light = self.lit.plan.caustics.then_some(Effect::Caustics);
         let owner = target.traces.meter.owner();
         for depth in 0..self.max_depth {
-            let lobes = match self.read(&surface, footprint, throughput, rng, &mut target) {
+            let Some(surface) = end.as_ref() else { break };
+            let lobes = match self.read(surface, footprint, throughput, rng, &mut target) {
                 Some(read) => {
                     radiance += read;
                     LobeSet::FOLLOWED
@@ -176,7 +178,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 let replaces = lobes.intersects(LobeSet::READ);
                 let effect = if replaces { Some(self.lit.plan.indirect_owner()) } else { light };
                 let before = target.traces.meter.enter_if(effect);
-                radiance += throughput * self.one_light(&surface, lobes, counted, rng, target.traces);
+                radiance += throughput * self.one_light(surface, lobes, counted, rng, target.traces);
                 target.traces.meter.back(before);
             }
             let sample = surface.bsdf.sample(rng.draw(), rng.draw2(), lobes, TransportMode::Radiance);
@@ -197,7 +199,9 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             let ray = Ray::leaving(surface.p, surface.ng, sample.wi, kind | self.lit.accel.lamp_bit());
             target.traces.rays.gather += 1;
             let hit = self.lit.accel.intersect(&ray);
-            let readable = hit.filter(|_| !sample.is_delta).and_then(|hit| self.readable(&ray, &hit, 0.0));
+            let readable = hit.filter(|_| !sample.is_delta).and_then(|hit| {
+                self.readable(&ray, &hit, 0.0).or_else(|| self.readable_varying(&ray, &hit, 0.0))
+            });
             if let Some(readable) = readable {
                 let throughput = throughput * readable.reflectance;
                 radiance += target.read(self.estimator, readable.place, throughput);
@@ -206,18 +210,16 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
             let lit_side = surface.bsdf.lit_side();
             let sampled = Sampled { pdf, shares: Shares::EVEN, kind, light, lit_side, width: Width::NONE };
-            let met = self.meet(ray, Some(hit), sampled, rng, &mut target.traces.meter);
+            let met = self.meet(ray, Some(hit), sampled, rng, &mut target.traces.meter, end);
             if light.is_some() {
                 radiance += throughput * met.light;
             }
             throughput *= met.through;
-            let Some(next) = met.surface else { break };
             footprint = if sample.is_delta {
                 Footprint { travelled: footprint.travelled + met.distance, sharp: false, ..footprint }
             } else {
                 Footprint { solid_angle: 0.0, travelled: met.distance, sharp: false }
             };
-            surface = next;
             target.traces.meter.back(owner);
         }
         target.traces.meter.back(owner);
