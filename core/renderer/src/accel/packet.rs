@@ -27,6 +27,13 @@ impl Packet {
         self.valid = [0; LANES];
     }
 
+    /// Lanes that are set.
+    #[must_use]
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.valid.map(|valid| (valid & 1) as usize).into_iter().sum()
+    }
+
     /// True when no lane is set.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -264,8 +264,9 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
                 if sharp && !self.lambert.any() { Effect::MirrorsAndGlass } else { plan.gather_owner() };
             self.traces.meter.enter(effect);
             self.gatherer.lit.accel.intersect_packet(&mut self.packet);
-            let rays = (0..LANES).filter(|&lane| self.packet.is_set(lane)).count();
-            self.traces.meter.count(effect, rays as u64);
+            let rays = self.packet.len() as u64;
+            self.traces.rays.gather += rays;
+            self.traces.meter.count(effect, rays);
             self.receive(&pdfs, index);
         }
         self.traces.meter.back(owner);
@@ -321,15 +322,19 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let mut places = [E::Place::default(); LANES];
         let mut weight = [Rgb::BLACK; LANES];
         let mut read = [false; LANES];
+        let mut solid_angles = [0.0; LANES];
+        for lane in 0..LANES {
+            solid_angles[lane] = g.solid_angle(pdfs[lane]);
+        }
         for lane in 0..LANES {
             if !self.packet.is_set(lane) {
                 continue;
             }
-            self.traces.rays.gather += 1;
-            let ray = self.others[lane]
-                .unwrap_or_else(|| GatherRay::diffuse(self.lambert.weight[lane], Some(pdfs[lane])));
+            let (ray, solid_angle) = match self.others[lane] {
+                Some(ray) => (ray, ray.pdf.map_or(0.0, |pdf| g.solid_angle(pdf))),
+                None => (GatherRay::diffuse(self.lambert.weight[lane], Some(pdfs[lane])), solid_angles[lane]),
+            };
             let hit = self.packet.hit(lane);
-            let solid_angle = ray.pdf.map_or(0.0, |pdf| (g.per_ray / pdf).min(g.widest));
             // No closure: it would not be compiled for the wider instructions.
             let readable = match hit {
                 Some(hit) if !ray.sharp => g.readable(&self.packet.ray(lane), &hit, solid_angle),

@@ -13,16 +13,19 @@ pub(super) fn camera_ray(camera: &Camera, lit: &LitScene<'_>, position: DVec2) -
     let [left, right, bottom, top] = camera.window;
     let at = position / DVec2::new(f64::from(camera.resolution[0]), f64::from(camera.resolution[1]));
     let plane = DVec2::new(left + (right - left) * at.x, bottom + (top - bottom) * at.y);
+    // One unit of depth along the ray.
     let (origin, direction) = match camera.projection {
-        Projection::Perspective => (DVec3::ZERO, plane.extend(-1.0).normalize()),
+        Projection::Perspective => (DVec3::ZERO, plane.extend(-1.0)),
         Projection::Orthographic => (plane.extend(0.0), DVec3::NEG_Z),
     };
-    let [near, far] = camera.clip.map(|d| f64::from(d) / -direction.z);
+    let [near, far] = camera.clip.map(f64::from);
     let to_scene = &camera.scene_from_camera;
     let start = to_scene.transform_point3(origin + direction * near.max(0.0));
-    let direction = to_scene.transform_vector3(direction).normalize().as_vec3();
-    let (ray, moved) = lit.entering(start, direction, visibility::CAMERA | lit.accel.camera_lamp_bit());
+    let direction = to_scene.transform_vector3(direction);
+    let length = direction.length();
+    let (ray, moved) =
+        lit.entering(start, (direction / length).as_vec3(), visibility::CAMERA | lit.accel.camera_lamp_bit());
     #[expect(clippy::cast_possible_truncation, reason = "rays are traced in f32")]
-    let reach = (far - near.max(0.0)) as f32 - moved;
+    let reach = ((far - near.max(0.0)) * length) as f32 - moved;
     (ray, reach.max(0.0))
 }

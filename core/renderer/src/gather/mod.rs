@@ -167,6 +167,12 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         }
     }
 
+    /// What a gather ray of density `pdf` stands for (sr).
+    #[inline(always)]
+    fn solid_angle(&self, pdf: f32) -> f32 {
+        (self.per_ray / pdf).min(self.widest)
+    }
+
     /// The camera sample of a pass. Even passes go through the first half of the set and odd ones through the second, so
     /// that each half of the film has a well-spread set of its own, after any number of passes.
     const fn sample_of_pass(&self, pass: u32) -> u32 {

@@ -3,18 +3,13 @@
 
 use glam::IVec3;
 
+use super::class::BACKS;
 use super::grid::{BRICK, LevelBox};
 
-/// A brick is a run of these in memory. The first tells which classes the brick knows, one bit each; one for each of them
-/// follows, in order: which of its cells exist, and the place of the first.
+/// A brick is a run of these in memory. The first tells which classes the brick knows, one bit each: fronts, then backs; one
+/// for each of them follows, in order: which of its cells exist, and the place of the first.
 #[derive(Clone, Copy, Debug, Default)]
 struct Slot([u64; 2]);
-
-impl Slot {
-    const fn classes(self) -> u128 {
-        (self.0[1] as u128) << 64 | self.0[0] as u128
-    }
-}
 
 /// The cells of one level that exist.
 #[derive(Clone, Debug)]
@@ -78,9 +73,9 @@ impl LevelIndex {
                 bricks[brick] = slots.len() as u32;
                 slots.push(Slot::default());
             }
-            let head = &mut slots[bricks[brick] as usize];
-            if head.classes() >> class & 1 == 0 {
-                head.0[class / 64] |= 1 << (class % 64);
+            let Slot(known) = &mut slots[bricks[brick] as usize];
+            if known[class / BACKS] >> (class % BACKS) & 1 == 0 {
+                known[class / BACKS] |= 1 << (class % BACKS);
                 slots.push(Slot([0, len as u64]));
             }
             if let Some(Slot([mask, _])) = slots.last_mut() {
@@ -110,11 +105,13 @@ impl LevelIndex {
         if brick == NO_BRICK {
             return None;
         }
-        let classes = self.slots[brick as usize].classes();
-        if classes >> class & 1 == 0 {
+        let Slot([fronts, backs]) = self.slots[brick as usize];
+        let (known, before) = if class < BACKS { (fronts, 0) } else { (backs, fronts.count_ones()) };
+        let class = class % BACKS;
+        if known >> class & 1 == 0 {
             return None;
         }
-        let rank = (classes & ((1 << class) - 1)).count_ones();
+        let rank = before + (known & ((1 << class) - 1)).count_ones();
         let Slot([mask, first]) = self.slots[(brick + 1 + rank) as usize];
         let below = mask & ((1 << bit) - 1);
         (mask >> bit & 1 == 1).then(|| first as usize + below.count_ones() as usize)
@@ -142,7 +139,7 @@ mod tests {
     use glam::DVec3;
     use std::collections::BTreeSet;
 
-    const CLASSES: i32 = 108;
+    const CLASSES: i32 = 2 * BACKS as i32;
 
     #[test]
     fn every_cell_is_found_where_its_key_says() {

@@ -4,7 +4,7 @@ use glam::{DVec3, IVec3, Vec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use super::class::NormalClasses;
+use super::class::{BACKS, NormalClasses};
 use super::grid::Grid;
 use super::index::{CellKey, LevelIndex};
 use super::measure::{Cells, Measure};
@@ -216,7 +216,7 @@ fn hide_contacts(grid: &Grid, classes: NormalClasses, cells: &mut Cells) {
     let contact = |(&(level, key), [front, _]): (&(u32, CellKey), &[CellSurface; 2])| {
         let level_box = &grid.levels[level as usize];
         let (cell, class) = key.cell(level_box);
-        if class >= classes.directions() || classes.facing(class) < class {
+        if class >= BACKS || classes.facing(class) < class {
             return None;
         }
         let other = (level, CellKey::new(level_box, cell, classes.facing(class)));
