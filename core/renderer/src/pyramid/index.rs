@@ -21,7 +21,8 @@ pub struct LevelIndex {
     len: usize,
 }
 
-const NO_BRICK: u32 = u32::MAX;
+/// Stands for a brick where there is none.
+pub(super) const NO_BRICK: u32 = u32::MAX;
 
 /// A cell's place for sorting: brick first, then class, then cell within the brick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

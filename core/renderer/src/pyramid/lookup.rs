@@ -4,6 +4,7 @@ use std::ops::Deref;
 
 use glam::{IVec3, Vec3};
 
+use super::index::NO_BRICK;
 use super::{Cell, Pyramid};
 use crate::color::Rgb;
 
@@ -47,13 +48,10 @@ impl<'a> View<'a> {
     #[must_use]
     #[inline(always)]
     pub fn irradiances<const N: usize>(&self, at: &[Place; N], wanted: &[bool; N]) -> [Rgb; N] {
-        let mut found = [None; N];
-        let mut bricks = [(0, 0, 0); N];
+        let mut bricks = [(0, NO_BRICK, 0); N];
         for i in (0..N).filter(|&i| wanted[i]) {
-            found[i] = self.pyramid.grid.locate(self.pyramid.grid.offset(at[i].p), at[i].level as usize);
-        }
-        for i in 0..N {
-            if let Some((level, cell)) = found[i] {
+            let located = self.pyramid.grid.locate(self.pyramid.grid.offset(at[i].p), at[i].level as usize);
+            if let Some((level, cell)) = located {
                 let (brick, bit) = self.pyramid.levels[level].index.brick(cell);
                 bricks[i] = (level, brick, bit);
             }
@@ -61,8 +59,7 @@ impl<'a> View<'a> {
         let mut places = [None; N];
         for i in 0..N {
             let (level, brick, bit) = bricks[i];
-            places[i] = found[i]
-                .and_then(|_| self.pyramid.levels[level].index.place(brick, bit, at[i].class as usize));
+            places[i] = self.pyramid.levels[level].index.place(brick, bit, at[i].class as usize);
         }
         let mut out = [Rgb::BLACK; N];
         for i in (0..N).filter(|&i| wanted[i]) {
