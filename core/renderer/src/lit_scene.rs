@@ -69,7 +69,8 @@ impl<'a> LitScene<'a> {
     fn varying_bsdf(&self, material: &PreparedMaterial, varying: &Varying, point: &HitPoint<'_>) -> Bsdf<'a> {
         let registers = varying.run(point, &self.accel.scene().textures);
         let ns = match varying.normal(&registers) {
-            Some(normal) => point.outward(normal.v.truncate()),
+            // A program may mix normals, or compute something that is none.
+            Some(normal) => point.outward(normal.v.truncate()).try_normalize().unwrap_or(point.ns),
             None => point.ns,
         };
         material.at(varying, &registers).into_bsdf(point.wo, point.ng, ns)

@@ -6,7 +6,9 @@ use glam::{DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::scene::record::{ClosureRecord, Input, MaterialRecord, OutputRecord, ProgramRecord};
 use rgp_renderer::scene::{CornerLayer, SceneBuilder};
-use rgp_renderer::shader::{Aside, Encoding, Extension, Instruction, Interpolation, Pixels, Texture};
+use rgp_renderer::shader::{
+    Aside, Encoding, Extension, Instruction, Interpolation, Pixels, Quantity, Texture, VectorFunction,
+};
 use support::*;
 
 /// A material whose program sets inputs of its first closure to constants.
@@ -124,4 +126,42 @@ fn indirect_light_has_the_mean_color_of_a_texture() {
         mean(&finish_and_render(builder, &settings(200_000, 64, 128)).indirect_radiance())
     };
     assert_close(wall(Some([0.2, 0.8, 0.8, 0.2])), wall(None), 0.01);
+}
+
+/// A normal that a program makes may have any length: under an even sky a surface is as bright as its albedo.
+#[test]
+fn the_length_of_a_normal_does_not_matter() {
+    for length in [0.2, 5.0] {
+        let mut record = diffuse(0.5);
+        record.program = Some(ProgramRecord {
+            instructions: vec![
+                Instruction::Geometry { quantity: Quantity::Normal, aside: Aside::Here },
+                Instruction::Constant { value: [length; 4] },
+                Instruction::VectorMath { function: VectorFunction::Scale, a: 0, b: 0, c: 1 },
+            ],
+            outputs: Vec::new(),
+            normal: Some(2),
+        });
+        let mut builder = SceneBuilder::default();
+        place(&mut builder, floor(1.0, 0.0), &[record]);
+        builder.set_world(world(1.0));
+        builder.set_camera(parallel_camera(DVec3::Z * 2.0, DVec3::ZERO, 1.0, 8));
+        for radiance in finish_and_render(builder, &settings(1000, 16, 64)).radiance() {
+            assert_close(radiance, 0.5, 0.02);
+        }
+    }
+}
+
+/// A mask may be dark where it is typical and bright elsewhere: it lights the scene all the same.
+#[test]
+fn what_may_emit_is_a_light() {
+    let dark = ClosureRecord::Emission { radiance: Rgb::BLACK };
+    let mut builder = SceneBuilder::default();
+    place(&mut builder, floor(1.0, 1.0), &[programmed(dark, &[(Input::Radiance, 2.0)])]);
+    place(&mut builder, floor(1.0, 0.0), &[diffuse(0.5)]);
+    builder.set_camera(parallel_camera(DVec3::Z * 0.5, DVec3::ZERO, 0.5, 8));
+    let picture = finish_and_render(builder, &settings(10_000, 16, 64));
+    assert!(mean(&picture.radiance()) > 0.1, "the floor is lit");
+    let called_for = |name| picture.stats.effects.iter().any(|e| e.name == name && e.called_for);
+    assert!(called_for("emissive_meshes") && called_for("direct_light"));
 }

@@ -112,6 +112,10 @@ impl PreparedMaterial {
             self.transparency += extreme.straight;
             self.refracts |= extreme.refracts;
             self.etas.extend(extreme.etas);
+            // Where the typical emission is none, such as that of a mask, there may be some all the same.
+            if self.mean_emission.is_black() {
+                self.mean_emission = extreme.mean_emission;
+            }
         }
         self.transparency = self.transparency.map(|c| c.min(1.0));
         self.constant_lambert = None;
