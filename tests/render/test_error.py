@@ -33,7 +33,7 @@ def render(scene: str, folder: Path, seed: int, *settings: str) -> tuple[Any, di
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["cornell_box", "table"])
+@pytest.mark.parametrize("scene", ["cornell_box", "table", "nave"])
 def test_error_is_the_true_error(scene: str, tmp_path: Path) -> None:
     first, second = (render(scene, tmp_path, seed, *TRUTH)[0] for seed in (101, 102))
     most = CLIPPED_AT * ((first + second) / 2.0).mean()
