@@ -21,7 +21,8 @@ use crate::lit_scene::LitScene;
 use crate::photon_pass::{self, PyramidDeposits};
 use crate::progress::{Progress, Stage};
 use crate::pyramid::{
-    Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, SETS, SidePoint, SurfaceTriangle,
+    Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, Reading, SETS, SidePoint,
+    SurfaceTriangle,
 };
 use crate::scene::Scene;
 use crate::settings::{EstimatorKind, RenderSettings, parse_bins};
@@ -228,11 +229,13 @@ fn light<'a>(
 /// The cells, over what the camera and its gather rays see.
 fn layout(lit: &LitScene<'_>, settings: &RenderSettings, progress: &Progress) -> Result<Layout, RenderError> {
     let scene = lit.accel.scene();
-    let seen = if lit.plan.indirect() { gather::seen_points(lit, settings.render.seed) } else { Vec::new() };
-    let seen = seen_bounds(seen, scene.bounds);
+    let (rays, seed) = (settings.gather.rays, settings.render.seed);
+    let readings = if lit.plan.indirect() { gather::pilot(lit, rays, seed) } else { Vec::new() };
+    let seen = seen_bounds(&readings, scene.bounds);
     let bounds = scene.bounds.map(Vec3::as_dvec3);
     let world_origin = -scene.space.center * scene.space.scale;
-    let grid = Grid::new(seen, bounds, settings.pyramid.finest_resolution, world_origin);
+    let mut grid = Grid::new(seen, bounds, settings.pyramid.finest_resolution, world_origin);
+    grid.refine(&readings, settings.pyramid.adaptive_levels);
     let classes =
         if settings.pyramid.normal_classes == "54" { NormalClasses::FiftyFour } else { NormalClasses::Six };
     let mut triangles: Vec<(u32, u32)> = Vec::new();
@@ -253,7 +256,8 @@ fn layout(lit: &LitScene<'_>, settings: &RenderSettings, progress: &Progress) ->
         }
     };
     let keep_going = || !progress.is_cancelled();
-    let open = |points: &[SidePoint]| openness::open(lit, points);
+    let base_cell_size = grid.base_cell_size();
+    let open = |points: &[SidePoint]| openness::open(lit, base_cell_size, points);
     Layout::new(grid, classes, triangles.len(), triangle, open, keep_going).ok_or(RenderError::Cancelled)
 }
 
@@ -264,14 +268,14 @@ const OUTLIERS: f64 = 0.02;
 const MARGIN: f64 = 0.1;
 
 /// A box around most of the points, within the scene's bounds.
-fn seen_bounds(points: Vec<Vec3>, bounds: [Vec3; 2]) -> [DVec3; 2] {
+fn seen_bounds(readings: &[Reading], bounds: [Vec3; 2]) -> [DVec3; 2] {
     let bounds = bounds.map(Vec3::as_dvec3);
-    if points.is_empty() {
+    if readings.is_empty() {
         return bounds;
     }
     let (mut low, mut high) = (DVec3::ZERO, DVec3::ZERO);
     for axis in 0..3 {
-        let mut values: Vec<f32> = points.iter().map(|p| p[axis]).collect();
+        let mut values: Vec<f32> = readings.iter().map(|reading| reading.p[axis]).collect();
         values.sort_by(f32::total_cmp);
         let skipped = (values.len() as f64 * OUTLIERS) as usize;
         low[axis] = f64::from(values[skipped]);

@@ -20,6 +20,8 @@ pub struct PhotonPassSettings {
 pub struct PyramidSettings {
     /// Cells along the longest side of the seen part.
     pub finest_resolution: u32,
+    /// Levels finer than that, made where gather rays end nearby.
+    pub adaptive_levels: u32,
     /// Direction bins of glossy cells, elevation × azimuth.
     pub bins: String,
     /// Normal classes: "6" or "54".
@@ -178,7 +180,13 @@ impl Default for PhotonPassSettings {
 
 impl Default for PyramidSettings {
     fn default() -> Self {
-        Self { finest_resolution: 128, bins: "8x16".into(), normal_classes: "54".into(), photons_per_cell: 4 }
+        Self {
+            finest_resolution: 128,
+            adaptive_levels: 2,
+            bins: "8x16".into(),
+            normal_classes: "54".into(),
+            photons_per_cell: 4,
+        }
     }
 }
 
@@ -282,6 +290,7 @@ pub const KNOBS: &[Knob] = &[
     knob("photon_pass", "photon_count", int(0, 1_000_000_000), "photons", "Photons emitted by all lights together; more make smoother indirect light"),
     knob("photon_pass", "max_depth", int(1, 1000), "surfaces", "Surfaces a photon may visit before it is dropped; low values darken the picture"),
     knob("pyramid", "finest_resolution", int(1, 1024), "cells", "Cells of the finest level along the longest side of what the camera and its gather rays see"),
+    knob("pyramid", "adaptive_levels", int(0, 3), "levels", "Levels with cells finer than that, made where gather rays end nearby; 0 for equal cells everywhere"),
     knob("pyramid", "bins", Kind::Bins, "", "Direction bins of glossy cells, elevation x azimuth; diffuse cells have none"),
     knob("pyramid", "normal_classes", Kind::Enum { choices: &["6", "54"] }, "", "Directions that keep surfaces in one cell apart: the six faces of a cube, or nine parts of each"),
     knob("pyramid", "photons_per_cell", int(1, 1000), "photons", "A cell is read from its parent where the parent holds fewer than four times as many photons"),

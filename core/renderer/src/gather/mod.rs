@@ -24,7 +24,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use glam::{DVec2, Vec3};
+use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::accel::Ray;
@@ -36,7 +36,7 @@ use crate::estimator::Estimator;
 use crate::film::{BLOCK, Film, PixelSample};
 use crate::lit_scene::{LitScene, Surface, ray_kind};
 use crate::progress::Progress;
-use crate::pyramid::SETS;
+use crate::pyramid::{Reading, SETS};
 use crate::sampling::{Rng, StratifiedSet, hash};
 use crate::scene::{Projection, visibility};
 use crate::settings::{GatherSampling, RenderSettings};
@@ -289,34 +289,38 @@ impl<E: Estimator> pulp::NullaryFnOnce for TileWork<'_, '_, E> {
     }
 }
 
-/// Points that the camera and its gather rays see: a pilot that decides how fine the cells are.
+/// Where the camera and gather rays, `rays` per pixel, see surface, and how fine the cells there should be: a pilot.
 #[must_use]
-pub fn seen_points(lit: &LitScene<'_>, seed: u32) -> Vec<Vec3> {
-    const EDGE: u32 = 48;
-    const GATHER_RAYS: u32 = 4;
+pub fn pilot(lit: &LitScene<'_>, rays: u32, seed: u32) -> Vec<Reading> {
+    const EDGE: u32 = 64;
+    const GATHER_RAYS: u32 = 16;
     const MAX_DEPTH: u32 = 8;
     let camera = &lit.accel.scene().camera;
     let frame = DVec2::from(camera.resolution.map(f64::from));
-    let points = (0..EDGE * EDGE).into_par_iter().flat_map_iter(|i| {
+    let readings = (0..EDGE * EDGE).into_par_iter().flat_map_iter(|i| {
         let mut rng = Rng::new(hash(hash(u64::from(seed), 0x70_69_6c_6f_74), u64::from(i)));
         // The whole frame, so that a border crops the picture and changes nothing in it.
         let at = DVec2::new(f64::from(i % EDGE), f64::from(i / EDGE)) + 0.5;
         let position = at / f64::from(EDGE) * frame;
         let (ray, _) = camera_ray(camera, lit, position);
-        let mut points = Vec::new();
+        let mut readings = Vec::new();
         if let Some(surface) = first_scatterer(lit, ray, MAX_DEPTH, &mut rng) {
-            points.push(surface.p);
+            readings.push(Reading { p: surface.p, cell_size: f32::INFINITY });
             for _ in 0..GATHER_RAYS {
                 let sample =
                     surface.bsdf.sample(rng.draw(), rng.draw2(), LobeSet::ALL, TransportMode::Radiance);
-                let ray = sample.map(|s| Ray::leaving(surface.p, surface.ng, s.wi, ray_kind(&s)));
-                points
-                    .extend(ray.and_then(|ray| first_scatterer(lit, ray, MAX_DEPTH, &mut rng)).map(|s| s.p));
+                let Some(sample) = sample else { continue };
+                let ray = Ray::leaving(surface.p, surface.ng, sample.wi, ray_kind(&sample));
+                let solid_angle = (1.0 / (rays as f32 * sample.pdf_solid_angle)).min(widest_stratum(rays));
+                readings.extend(first_scatterer(lit, ray, MAX_DEPTH, &mut rng).map(|seen| Reading {
+                    p: seen.p,
+                    cell_size: 0.5 * solid_angle.sqrt() * seen.p.distance(surface.p),
+                }));
             }
         }
-        points
+        readings
     });
-    points.collect()
+    readings.collect()
 }
 
 /// The first surface along a ray that is not only mirror, glass or transparent; lamps do not count.

@@ -40,7 +40,7 @@ impl Estimator for PyramidLookup<'_> {
     /// `None` for rays too short for the cell they would read.
     #[inline(always)]
     fn place(&self, p: Vec3, side: Side, _wo: Vec3, footprint: Footprint) -> Option<Place> {
-        let level = self.pyramid.level_for(footprint.area());
+        let level = self.pyramid.existing_level(p, self.pyramid.level_for(footprint.area()));
         let near = footprint.travelled < self.retrace_distance * self.pyramid.nominal_cell_size(level);
         #[expect(clippy::cast_possible_truncation, reason = "classes and levels are few")]
         let place = || Place { p, class: self.pyramid.class(side) as u32, level: level as u32 };

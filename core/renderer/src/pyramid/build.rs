@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::accumulator::{Accumulator, CellSum, SETS, Sums};
 use super::bins::BinStore;
+use super::grid::Grid;
 use super::index::{CellKey, LevelIndex};
 use super::layout::Layout;
 use super::mixed::mixed_cells;
@@ -38,6 +39,18 @@ impl Pyramid {
         let mut bins_time = clock.elapsed();
         let mixed = mixed_cells(layout, &sums.cells, &visible);
         let enough = 4 * u64::from(photons_per_cell);
+        let mut grid = layout.grid.clone();
+        let base = grid.base();
+        let divided = (base..grid.finest()).flat_map(|number| {
+            let level = &layout.grid.levels[number];
+            let (sums, mixed) = (&sums.cells, &mixed);
+            layout.levels[number].keys.iter().enumerate().filter_map(move |(place, key)| {
+                let count = sums[number][place].count;
+                let weight = if mixed[number][place] && count >= enough { 1000 } else { 1 };
+(count > 0).then(|| (number, key.cell(level).0, weight, count >= enough))
+            })
+        });
+        grid.prune(divided);
         let mut store = BinStore::new(sums.bins);
         let mut levels: Vec<Level> = Vec::with_capacity(layout.levels.len());
         for (number, mixed) in mixed.iter().enumerate() {
@@ -56,10 +69,20 @@ impl Pyramid {
                 parent(place).filter(|[parent, _]| reads_parent(parent, layout, number, place))
             };
             let clock = Instant::now();
-            let glossy = push_bins(layout, number, &sums, &mut store, |place| read_above(place).is_none());
+            let exists = |place: usize| {
+                let level = &layout.grid.levels[number];
+                let (cell, _) = layout.levels[number].keys[place].cell(level);
+                number <= base || grid.is_divided(number - 1, level.lattice(cell) >> 1)
+            };
+            let glossy = push_bins(layout, number, &sums, &mut store, |place| exists(place) && read_above(place).is_none());
             bins_time += clock.elapsed();
+            let is_divided = |place: usize| {
+                let level = &layout.grid.levels[number];
+                let (cell, _) = layout.levels[number].keys[place].cell(level);
+                grid.is_divided(number, level.lattice(cell))
+            };
             let settle = |place: usize| -> [Cell; SETS] {
-                let enough = sums.cells[number][place].count >= enough;
+                let enough = sums.cells[number][place].count >= enough && is_divided(place);
                 let parent = read_above(place);
                 std::array::from_fn(|set| {
                     let cell = match parent {
@@ -71,9 +94,8 @@ impl Pyramid {
             };
             let values: Vec<[Cell; SETS]> =
                 (0..layout.levels[number].keys.len()).into_par_iter().map(settle).collect();
-            levels.push(keep_lit(layout, number, &sums.cells[number], &values));
+            levels.push(keep_lit(layout, &grid, number, &sums.cells[number], &values));
         }
-        let grid = layout.grid.clone();
         let per_finest_area = grid.levels[grid.finest()].cell_size.powi(-2);
         Some(Self { grid, classes: layout.classes, levels, store, bins_time, per_finest_area })
     }
@@ -151,8 +173,13 @@ fn merge_bins(layout: &Layout, sums: &mut Sums) {
 
 /// Cells without a photon need no memory: what is missing is dark where its parent holds enough photons to know, and
 /// else read from the parent.
-fn keep_lit(layout: &Layout, number: usize, sums: &[CellSum], values: &[[Cell; SETS]]) -> Level {
-    let places: Vec<usize> = (0..values.len()).filter(|&place| sums[place].count > 0).collect();
+fn keep_lit(layout: &Layout, grid: &Grid, number: usize, sums: &[CellSum], values: &[[Cell; SETS]]) -> Level {
+    let level = &layout.grid.levels[number];
+    let exists = |place: usize| {
+        let (cell, _) = layout.levels[number].keys[place].cell(level);
+        number <= grid.base() || grid.is_divided(number - 1, level.lattice(cell) >> 1)
+    };
+    let places: Vec<usize> = (0..values.len()).filter(|&place| sums[place].count > 0 && exists(place)).collect();
     let keys = places.iter().map(|&place| -> CellKey { layout.levels[number].keys[place] });
     let index = LevelIndex::new(&layout.grid.levels[number], keys);
     let cells = std::array::from_fn(|set| places.iter().map(|&place| values[place][set]).collect());

@@ -25,8 +25,8 @@ pub(super) fn clip_triangle(grid: &Grid, corners: [DVec3; 3], add: &mut impl FnM
     let offsets = corners.map(|p| grid.offset_f64(p));
     let polygon: Polygon = offsets.into_iter().collect();
     let (low, high) = extent(&polygon);
-    // The finest cell of any level that holds the whole triangle saves the cuts above it.
-    for level in (0..grid.levels.len()).rev() {
+    // The finest cell that holds the whole triangle saves the cuts above it.
+    for level in (0..=grid.base()).rev() {
         let cell_size = cell_size(grid, level);
         let (first, last) = ((low / cell_size).floor().as_ivec3(), (high / cell_size).floor().as_ivec3());
         if first == last && grid.levels[level].within(first).is_some() {
@@ -63,8 +63,7 @@ fn descend(
         return;
     }
     let Some(cell) = grid.levels[level].within(lattice) else { return };
-    let finer = grid.levels.get(level + 1).is_some_and(|finer| finer.within(lattice << 1_i32).is_some());
-    if finer {
+    if grid.is_divided(level, lattice) {
         return halve(grid, level + 1, lattice << 1_i32, 0, polygon, add);
     }
     let part = measure(polygon);

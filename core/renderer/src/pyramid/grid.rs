@@ -4,6 +4,9 @@
 //! bounds. Light far away is held in cells as coarse as its distance asks for, so that a plane of kilometres round a room
 //! costs a few thousand cells and the room keeps its fine ones. Cells are anchored in the world: they stay put when the
 //! seen part changes.
+//!
+//! Below the finest of these levels there may be a few more, which exist only in the blocks of cells where they pay
+//! ([`Grid::refine`]).
 
 use glam::{DVec3, IVec3, Vec3};
 
@@ -49,6 +52,19 @@ pub struct Grid {
     origin_f64: DVec3,
     /// Level 0 is the coarsest.
     pub levels: Vec<LevelBox>,
+    /// The finest level that exists all over its box.
+    base: usize,
+    /// By block of that level, [`BRICK`] cells wide: how many levels below it exist there.
+    refinements: Vec<u8>,
+}
+
+/// A place where light is read, and how finely.
+#[derive(Clone, Copy, Debug)]
+pub struct Reading {
+    /// Where, in scene space.
+    pub p: Vec3,
+    /// Edge of the cells that would do (scene units).
+    pub cell_size: f32,
 }
 
 /// Cells per edge of a brick.
@@ -56,6 +72,12 @@ pub(super) const BRICK: i32 = 4;
 
 /// Cells along the seen part below which a level is too coarse to be right (one eighth of the scene).
 const COARSEST_RESOLUTION: f64 = 8.0;
+
+/// Cells along the longest side beyond which nothing is refined: their index alone would take too much memory.
+const MOST_RESOLUTION: u32 = 2048;
+
+/// Readings of a pilot that a block needs for a level of its own.
+const LEAST_READINGS: u32 = 2;
 
 /// Walls modelled at round coordinates must not lie on a border between cells; part of a finest cell.
 const ANCHOR_OFFSET: f64 = 0.381_966;
@@ -90,7 +112,81 @@ impl Grid {
             level_box(low - origin, high - origin, cell_size)
         });
         let levels = nested(levels.collect());
-        Self { origin: origin.as_vec3(), origin_f64: origin, levels }
+        let base = levels.len() - 1;
+        let blocks = (levels[base].size / BRICK).element_product();
+        #[expect(clippy::cast_sign_loss, reason = "a box has cells")]
+        let refinements = vec![0; blocks as usize];
+        Self { origin: origin.as_vec3(), origin_f64: origin, levels, base, refinements }
+    }
+
+    /// Adds finer levels in the blocks that `readings` ask for it: so many levels as a few of them want there.
+    pub fn refine(&mut self, readings: &[Reading], most: u32) {
+        let base = self.levels[self.base];
+        let resolution = base.size.max_element() as u32;
+        let most = most.min((MOST_RESOLUTION / resolution.max(1)).checked_ilog2().unwrap_or(0)) as usize;
+        let mut wanted = vec![0_u32; self.refinements.len() * most];
+        for reading in readings {
+            let finer = (base.cell_size / reading.cell_size.max(f32::MIN_POSITIVE)).log2().round();
+            let block = base.cell(self.offset(reading.p)).map(|cell| self.block(cell));
+            let Some(block) = block else { continue };
+            for count in wanted[block * most..][..most].iter_mut().take(finer.max(0.0) as usize) {
+                *count += 1;
+            }
+        }
+        for (refinements, wanted) in self.refinements.iter_mut().zip(wanted.chunks(most.max(1))) {
+            *refinements = wanted.iter().take_while(|&&count| count >= LEAST_READINGS).count() as u8;
+        }
+        for _ in 0..self.refinements.iter().copied().max().unwrap_or(0) {
+            let LevelBox { cell_size, inverse_cell_size, low, size } = self.levels[self.finest()];
+            let (cell_size, inverse_cell_size) = (cell_size * 0.5, inverse_cell_size * 2.0);
+            self.levels.push(LevelBox { cell_size, inverse_cell_size, low: low * 2, size: size * 2 });
+        }
+    }
+
+    /// Leaves out, block by block, the levels below the base level that are not worth reading: `is_read` tells of a cell
+    /// of a level whether there is reason to read its children, or not; each block goes as deep as most of its cells say.
+    pub(super) fn prune(&mut self, divided: impl Iterator<Item = (usize, IVec3, u32, bool)>) {
+        let deepest = self.finest() - self.base;
+        let mut votes = vec![[0_u32; 2]; self.refinements.len() * deepest];
+        for (level, cell, weight, worth) in divided {
+            let level_box = &self.levels[level];
+            let above = level - self.base;
+            let Some(cell) = self.levels[self.base].within(level_box.lattice(cell) >> above as i32) else { continue };
+            votes[self.block(cell) * deepest + above][usize::from(worth)] += weight;
+        }
+        for (refinements, votes) in self.refinements.iter_mut().zip(votes.chunks(deepest.max(1))) {
+            let worth = votes.iter().take_while(|[against, for_it]| for_it > against).count() as u8;
+            *refinements = worth.min(*refinements);
+        }
+    }
+
+    /// Number of the block of a cell of the base level.
+    #[inline(always)]
+    #[expect(clippy::cast_sign_loss, reason = "cells within a box are not negative")]
+    fn block(&self, cell: IVec3) -> usize {
+        let (block, blocks) = (cell >> 2_i32, self.levels[self.base].size >> 2_i32);
+        ((block.z * blocks.y + block.y) * blocks.x + block.x) as usize
+    }
+
+    /// The finest level up to `level` that exists around a position in the box of the base level.
+    #[inline(always)]
+    pub(super) fn existing(&self, offset: Vec3, level: usize) -> usize {
+        if level <= self.base {
+            return level;
+        }
+        let cell = self.levels[self.base].cell(offset);
+        let finer = cell.map_or(0, |cell| self.refinements[self.block(cell)]);
+        level.min(self.base + usize::from(finer))
+    }
+
+    /// Whether a cell, in lattice coordinates, is divided into cells of the next level.
+    pub(super) fn is_divided(&self, level: usize, lattice: IVec3) -> bool {
+        let Some(finer) = self.levels.get(level + 1) else { return false };
+        if level < self.base {
+            return finer.within(lattice << 1_i32).is_some();
+        }
+        let cell = self.levels[self.base].within(lattice >> (level - self.base) as i32);
+        cell.is_some_and(|cell| self.base + usize::from(self.refinements[self.block(cell)]) > level)
     }
 
     /// Position relative to the lattice's origin, as [`LevelBox::cell`] wants it.
@@ -112,16 +208,29 @@ impl Grid {
         p - self.origin_f64
     }
 
+    /// Index of the finest level that exists all over its box.
+    #[must_use]
+    pub(super) const fn base(&self) -> usize {
+        self.base
+    }
+
+    /// Edge of a cell of the finest level that exists all over its box (scene units).
+    #[must_use]
+    pub fn base_cell_size(&self) -> f32 {
+        self.levels[self.base].cell_size
+    }
+
     /// Index of the finest level.
     #[must_use]
     pub const fn finest(&self) -> usize {
         self.levels.len() - 1
     }
 
-    /// The finest level at or above `level` whose box holds the position, with the cell.
+    /// The finest level up to `level` that exists at the position, with the cell.
     #[must_use]
     #[inline(always)]
     pub fn locate(&self, offset: Vec3, level: usize) -> Option<(usize, IVec3)> {
+        let level = self.existing(offset, level);
         if let Some(cell) = self.levels[level].cell(offset) {
             return Some((level, cell));
         }

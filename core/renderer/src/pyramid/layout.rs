@@ -1,13 +1,13 @@
 //! Which cells the surfaces need, and how much surface lies in each: made from the triangles, before any photon.
 
-use glam::{DVec3, IVec3, Vec3};
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::class::{BACKS, NormalClasses};
 use super::grid::Grid;
 use super::index::{CellKey, LevelIndex};
-use super::measure::{Cells, Measure};
+use super::measure::{Cells, Measure, add_surfaces};
 use crate::math::Side;
 
 /// One triangle as the pyramid sees it.
@@ -162,30 +162,19 @@ impl Layout {
         if let Some(place) = index.find(cell, class) {
             return Some((level, place));
         }
-        let size = self.grid.levels[level].size;
-        let fraction = offset / self.grid.levels[level].cell_size;
+        let cell_size = self.grid.levels[level].cell_size;
+        let fraction = offset / cell_size;
         let fraction = fraction - fraction.floor() - Vec3::splat(0.5);
         let mut axes = [0, 1, 2];
         axes.sort_by(|&a, &b| fraction[b].abs().total_cmp(&fraction[a].abs()));
-        let step = |cell: IVec3, axis: usize| {
-            let mut beside = cell;
-            beside[axis] += if fraction[axis] < 0.0 { -1 } else { 1 };
-            beside
-        };
         // Nearest first: across the closest face, the next face, then the edge between them, and so on.
-        let (a, b, c) = (axes[0], axes[1], axes[2]);
-        let beside = [
-            step(cell, a),
-            step(cell, b),
-            step(step(cell, a), b),
-            step(cell, c),
-            step(step(cell, a), c),
-            step(step(cell, b), c),
-            step(step(step(cell, a), b), c),
-        ];
-        let inside = |c: IVec3| (c.cmpge(IVec3::ZERO) & c.cmplt(size)).all();
-        let place = beside.into_iter().filter(|&c| inside(c)).find_map(|c| index.find(c, class))?;
-        Some((level, place))
+        let (a, b, c) = (1 << axes[0], 1 << axes[1], 1 << axes[2]);
+        [a, b, a | b, c, a | c, b | c, a | b | c].into_iter().find_map(|across: usize| {
+            let step = |axis: usize| if across >> axis & 1 == 1 { cell_size.copysign(fraction[axis]) } else { 0.0 };
+            let beside = offset + Vec3::new(step(0), step(1), step(2));
+            let (level, cell) = self.grid.locate(beside, self.grid.finest())?;
+            Some((level, self.levels[level].index.find(cell, class)?))
+        })
     }
 
     /// Place of the coarser cell that holds a cell.
@@ -234,26 +223,31 @@ fn hide_contacts(grid: &Grid, classes: NormalClasses, cells: &mut Cells) {
     }
 }
 
+/// What counts of a cell's open and hidden surface.
+fn counted([mut surface, hidden]: [CellSurface; 2]) -> CellSurface {
+    if surface.area * LEAST_OPEN < hidden.area {
+        surface.add(&hidden);
+    } else if surface.glossy_area * LEAST_OPEN < hidden.glossy_area {
+        surface.glossy_area += hidden.glossy_area;
+    }
+    surface
+}
+
 /// Sorts the cells by level and adds every cell's ancestors.
 fn levels(grid: &Grid, classes: NormalClasses, cells: Cells) -> Vec<LevelLayout> {
-    let mut by_level: Vec<FxHashMap<CellKey, CellSurface>> = vec![FxHashMap::default(); grid.levels.len()];
+    let mut by_level: Vec<FxHashMap<CellKey, [CellSurface; 2]>> = vec![FxHashMap::default(); grid.levels.len()];
     let mut cells = cells;
     hide_contacts(grid, classes, &mut cells);
-    for ((level, key), [mut surface, hidden]) in cells {
-        if surface.area * LEAST_OPEN < hidden.area {
-            surface.add(&hidden);
-        } else if surface.glossy_area * LEAST_OPEN < hidden.glossy_area {
-            surface.glossy_area += hidden.glossy_area;
-        }
-        by_level[level as usize].insert(key, surface);
+    for ((level, key), surfaces) in cells {
+        by_level[level as usize].insert(key, surfaces);
     }
     for level in (1..grid.levels.len()).rev() {
         let (coarser, finer) = by_level.split_at_mut(level);
-        for (key, surface) in &finer[0] {
+        for (key, surfaces) in &finer[0] {
             let (cell, class) = key.cell(&grid.levels[level]);
             if let Some(parent) = grid.parent(level, cell) {
                 let key = CellKey::new(&grid.levels[level - 1], parent, class);
-                coarser[level - 1].entry(key).or_default().add(surface);
+                add_surfaces(coarser[level - 1].entry(key).or_default(), surfaces);
             }
         }
     }
@@ -263,7 +257,8 @@ fn levels(grid: &Grid, classes: NormalClasses, cells: Cells) -> Vec<LevelLayout>
         .map(|(cells, level)| {
             let mut cells: Vec<_> = cells.into_iter().collect();
             cells.par_sort_unstable_by_key(|(key, _)| *key);
-            let (keys, surfaces): (Vec<_>, Vec<_>) = cells.into_iter().unzip();
+            let (keys, surfaces): (Vec<_>, Vec<_>) =
+                cells.into_iter().map(|(key, surfaces)| (key, counted(surfaces))).unzip();
             let index = LevelIndex::new(level, keys.iter().copied());
             LevelLayout { index, keys, surfaces }
         })

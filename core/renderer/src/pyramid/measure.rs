@@ -65,7 +65,7 @@ impl<O: Fn(&[SidePoint]) -> Vec<bool> + Sync> Measure<'_, O> {
 
     /// Ranges of triangles that make enough parts to be asked about together.
     fn chunks(&self, areas: &[f64]) -> Vec<Range<usize>> {
-        let finest = f64::from(self.grid.levels[self.grid.finest()].cell_size).powi(2);
+        let finest = f64::from(self.grid.levels[self.grid.base()].cell_size).powi(2);
         let (mut chunks, mut first, mut parts) = (Vec::new(), 0, 0.0);
         for (i, area) in areas.iter().enumerate() {
             parts += 1.0 + area / finest;
@@ -171,7 +171,7 @@ impl PendingPart {
     }
 }
 
-fn add_surfaces(sums: &mut [CellSurface; 2], surfaces: &[CellSurface; 2]) {
+pub(super) fn add_surfaces(sums: &mut [CellSurface; 2], surfaces: &[CellSurface; 2]) {
     for (sum, surface) in sums.iter_mut().zip(surfaces) {
         sum.add(surface);
     }

@@ -34,7 +34,7 @@ use glam::{IVec3, Vec3};
 pub use accumulator::{Accumulator, Landing, Leaving, SETS};
 pub use bins::{DirectionBins, Lanes};
 pub use class::NormalClasses;
-pub use grid::Grid;
+pub use grid::{Grid, Reading};
 pub use layout::{Layout, SidePoint, SurfaceTriangle};
 pub use lookup::{Place, View};
 
@@ -190,6 +190,13 @@ impl Pyramid {
     #[inline]
     pub fn nominal_cell_size(&self, level: usize) -> f32 {
         self.grid.levels[level].cell_size
+    }
+
+    /// The level that a look-up at `p` of level `level` reads where finer ones do not exist everywhere.
+    #[must_use]
+    #[inline(always)]
+    pub fn existing_level(&self, p: Vec3, level: usize) -> usize {
+        self.grid.existing(self.grid.offset(p), level)
     }
 
     /// Reads the light of one set of photons, below [`SETS`].
