@@ -67,3 +67,40 @@ pub(super) fn camera_width(camera: &Camera, lens: Option<&Lens>, camera_samples:
     let blur_spread = lens.map_or(0.0, |lens| -blur / lens.focus_distance());
     Width { start, spread, blur: blur as f32, blur_spread: blur_spread as f32 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::SceneBuilder;
+    use crate::scene::record::{CameraRecord, LensRecord};
+
+    /// Wide as the pixel in the plane of focus; elsewhere wider by the blur, also behind a mirror that the ray met before.
+    #[test]
+    fn camera_rays_are_as_wide_as_what_they_stand_for() {
+        let (focus, radius, pixel, samples) = (2.0, 0.1, 0.01, 4);
+        let lens = LensRecord { radius, blades: 0, rotation: 0.0, ratio: 1.0, focus_distance: focus };
+        let mut builder = SceneBuilder::default();
+        builder.set_camera(CameraRecord {
+            name: "camera".into(),
+            projection: Projection::Perspective,
+            world_from_camera: glam::DMat4::IDENTITY.to_cols_array_2d(),
+            window: [-1.0, 1.0, -1.0, 1.0],
+            resolution: [200, 200],
+            region: [0, 0, 200, 200],
+            clip: [0.0, 100.0],
+            lens: Some(lens),
+        });
+        let camera = builder.finish().expect("a camera suffices").camera;
+        let width = camera_width(&camera, camera.lens.as_ref(), samples);
+        for depth in [0.5, 2.0, 3.0, 7.0] {
+            let blur = std::f64::consts::PI.sqrt() * radius * (1.0 - depth / focus).abs();
+            let expected = (pixel * depth + blur) / f64::from(samples).sqrt();
+            let depth = depth as f32;
+            for found in [width.at(depth), width.after(0.4).at(depth - 0.4)] {
+                assert!((f64::from(found) - expected).abs() < 1e-6, "{found} is not {expected}");
+            }
+            let sharp = camera_width(&camera, None, samples).at(depth);
+            assert!((f64::from(sharp) - pixel * f64::from(depth) / 2.0).abs() < 1e-7);
+        }
+    }
+}
