@@ -15,6 +15,7 @@ mod direct;
 mod floor;
 mod lambert;
 mod path;
+mod pilot;
 mod pyramid_lookup;
 mod readable;
 mod stop;
@@ -24,30 +25,29 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use glam::DVec2;
-use rayon::prelude::*;
 
-use crate::accel::Ray;
-use crate::bsdf::{LobeSet, PreparedMaterial, TransportMode, Varying};
+use crate::accel::Hit;
+use crate::bsdf::{LobeSet, PreparedMaterial, Varying};
 use crate::color::Rgb;
 use crate::effects_plan::Costs;
 use crate::error::RenderError;
 use crate::estimator::Estimator;
 use crate::film::{BLOCK, Film, PixelSample};
-use crate::lit_scene::{LitScene, Surface, ray_kind};
+use crate::lit_scene::LitScene;
 use crate::progress::Progress;
-use crate::pyramid::{Reading, SETS};
-use crate::sampling::{Rng, StratifiedSet, hash};
-use crate::scene::{Projection, visibility};
+use crate::pyramid::SETS;
+use crate::sampling::{StratifiedSet, hash};
+use crate::scene::Lens;
 use crate::settings::{GatherSampling, RenderSettings};
 use crate::stats::{RayCounts, StoppedBy};
 
 use block::{Block, widest_stratum};
-use camera::camera_ray;
+use camera::camera_width;
 use convergence::Convergence;
 use deferred::{OpenTile, Traces};
 use direct::Shares;
 pub use floor::{TraceFloor, trace_floor};
+pub use pilot::pilot;
 pub use pyramid_lookup::PyramidLookup;
 pub use stop::Stop;
 
@@ -62,6 +62,8 @@ pub struct Gatherer<'a, E> {
     max_depth: u32,
     sampling: GatherSampling,
     camera_set: StratifiedSet,
+    /// The lens that camera rays pass through, and where.
+    lens: Option<(&'a Lens, StratifiedSet)>,
     light_set: StratifiedSet,
     gather_set: StratifiedSet,
     /// Of a pixel: light samples against gather rays.
@@ -95,32 +97,31 @@ fn is_varying_lambert(material: &PreparedMaterial) -> bool {
 struct Width {
     start: f32,
     spread: f32,
+    /// Blur of the lens where the ray starts, and how it grows; below zero before it grows again.
+    blur: f32,
+    blur_spread: f32,
 }
 
 impl Width {
     /// That of a ray without extent.
-    const NONE: Self = Self { start: 0.0, spread: 0.0 };
+    const NONE: Self = Self { start: 0.0, spread: 0.0, blur: 0.0, blur_spread: 0.0 };
 
     /// Of a ray that stands for a solid angle.
     fn of_solid_angle(solid_angle: f32) -> Self {
-        Self { start: 0.0, spread: solid_angle.sqrt() }
+        Self { spread: solid_angle.sqrt(), ..Self::NONE }
     }
 
     fn at(self, distance: f32) -> f32 {
-        self.start + self.spread * distance
+        self.start + self.spread * distance + (self.blur + self.blur_spread * distance).abs()
     }
-}
 
-/// The width of a camera sample: a pixel's area, dealt out to its samples.
-#[expect(clippy::cast_possible_truncation, reason = "widths need no more than f32")]
-fn camera_width(lit: &LitScene<'_>, camera_samples: u32) -> Width {
-    let camera = &lit.accel.scene().camera;
-    let [left, right, ..] = camera.window;
-    let pixel = (right - left).abs() / f64::from(camera.resolution[0]);
-    let share = (pixel / f64::from(camera_samples).sqrt()) as f32;
-    match camera.projection {
-        Projection::Perspective => Width { start: 0.0, spread: share },
-        Projection::Orthographic => Width { start: share, spread: 0.0 },
+    /// That of the ray that goes on after a distance.
+    fn after(self, distance: f32) -> Self {
+        Self {
+            start: self.start + self.spread * distance,
+            blur: self.blur + self.blur_spread * distance,
+            ..self
+        }
     }
 }
 
@@ -139,6 +140,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         let reads_diffuse = lit.plan.reads.intersects(LobeSet::DIFFUSE);
         let varying_lambert_read: Vec<bool> =
             lit.materials.iter().map(|material| reads_diffuse && is_varying_lambert(material)).collect();
+        let camera = &lit.accel.scene().camera;
+        let lens = camera.lens.as_ref().filter(|_| lit.plan.depth_of_field);
         Self {
             lit,
             estimator,
@@ -149,6 +152,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             max_depth: gather.max_depth.max(E::LEAST_DEPTH),
             sampling: gather.sampling,
             camera_set: set(gather.camera_samples, 1),
+            lens: lens.map(|lens| (lens, StratifiedSet::unshared(gather.camera_samples))),
             light_set: set(gather.camera_samples * gather.light_samples, 2),
             gather_set: set(gather.rays, 3),
             shares: Shares {
@@ -163,8 +167,13 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             plain,
             has_varying: varying_lambert_read.contains(&true),
             varying_lambert_read,
-            camera_width: camera_width(lit, gather.camera_samples),
+            camera_width: camera_width(camera, lens, gather.camera_samples),
         }
+    }
+
+    /// True where camera rays see a hole in the picture.
+    fn is_holdout(&self, hit: &Hit) -> bool {
+        self.lit.accel.scene().objects[hit.object as usize].is_holdout()
     }
 
     /// What a gather ray of density `pdf` stands for (sr).
@@ -287,62 +296,4 @@ impl<E: Estimator> pulp::NullaryFnOnce for TileWork<'_, '_, E> {
         self.film.take(self.index, samples);
         Ok((rays, meter.costs, None))
     }
-}
-
-/// Where the camera and gather rays, `rays` per pixel, see surface, and how fine the cells there should be: a pilot.
-#[must_use]
-pub fn pilot(lit: &LitScene<'_>, rays: u32, seed: u32) -> Vec<Reading> {
-    const EDGE: u32 = 64;
-    const GATHER_RAYS: u32 = 16;
-    const MAX_DEPTH: u32 = 8;
-    let camera = &lit.accel.scene().camera;
-    let frame = DVec2::from(camera.resolution.map(f64::from));
-    let readings = (0..EDGE * EDGE).into_par_iter().flat_map_iter(|i| {
-        let mut rng = Rng::new(hash(hash(u64::from(seed), 0x70_69_6c_6f_74), u64::from(i)));
-        // The whole frame, so that a border crops the picture and changes nothing in it.
-        let at = DVec2::new(f64::from(i % EDGE), f64::from(i / EDGE)) + 0.5;
-        let position = at / f64::from(EDGE) * frame;
-        let (ray, _) = camera_ray(camera, lit, position);
-        let mut readings = Vec::new();
-        if let Some(surface) = first_scatterer(lit, ray, MAX_DEPTH, &mut rng) {
-            readings.push(Reading { p: surface.p, cell_size: f32::INFINITY });
-            for _ in 0..GATHER_RAYS {
-                let sample =
-                    surface.bsdf.sample(rng.draw(), rng.draw2(), LobeSet::ALL, TransportMode::Radiance);
-                let Some(sample) = sample else { continue };
-                let ray = Ray::leaving(surface.p, surface.ng, sample.wi, ray_kind(&sample));
-                let solid_angle = (1.0 / (rays as f32 * sample.pdf_solid_angle)).min(widest_stratum(rays));
-                readings.extend(first_scatterer(lit, ray, MAX_DEPTH, &mut rng).map(|seen| Reading {
-                    p: seen.p,
-                    cell_size: 0.5 * solid_angle.sqrt() * seen.p.distance(surface.p),
-                }));
-            }
-        }
-        readings
-    });
-    readings.collect()
-}
-
-/// The first surface along a ray that is not only mirror, glass or transparent; lamps do not count.
-fn first_scatterer<'a>(
-    lit: &'a LitScene<'a>,
-    mut ray: Ray,
-    max_depth: u32,
-    rng: &mut Rng,
-) -> Option<Surface<'a>> {
-    ray.mask &= !visibility::LAMP;
-    for _ in 0..max_depth {
-        let hit = lit.accel.intersect(&ray)?;
-        let surface = lit.surface(&ray, hit, 0.0);
-        if rng.draw() < surface.bsdf.transparency.mean() {
-            ray = Ray::leaving(surface.p, surface.ng, ray.direction, ray.mask);
-        } else if surface.bsdf.has(LobeSet::NON_DELTA) {
-            return Some(surface);
-        } else {
-            let sample =
-                surface.bsdf.sample(rng.draw(), rng.draw2(), LobeSet::ALL, TransportMode::Radiance)?;
-            ray = Ray::leaving(surface.p, surface.ng, sample.wi, ray_kind(&sample));
-        }
-    }
-    None
 }

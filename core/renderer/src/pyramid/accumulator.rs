@@ -73,15 +73,13 @@ impl<'a> Accumulator<'a> {
         // A power of two, so that twice the light gives exactly twice the picture.
         let quantum = (f64::from(total_flux.max(f32::MIN_POSITIVE)).log2().ceil() - QUANTUM_BITS).exp2();
         let cells = layout.levels.iter().map(|level| level.index.len());
+        let glossy_cells = cells.clone().take(layout.grid.base() + 1);
         let all_bins = bins.unwrap_or(DirectionBins { elevation: 1, azimuth: 1 });
         Self {
             layout,
             flux: cells.clone().map(|n| std::iter::repeat_with(Default::default).take(n).collect()).collect(),
-            count: cells
-                .clone()
-                .map(|n| std::iter::repeat_with(Default::default).take(n).collect())
-                .collect(),
-            glossy: cells
+            count: cells.map(|n| std::iter::repeat_with(Default::default).take(n).collect()).collect(),
+            glossy: glossy_cells
                 .map(|n| {
                     std::iter::repeat_with(Mutex::default).take(if bins.is_some() { n } else { 0 }).collect()
                 })
@@ -110,13 +108,15 @@ impl<'a> Accumulator<'a> {
     }
 
     /// Adds what the photon's surface sends in each direction. `at` in [0, 1)² is where in each bin that is asked; a random
-    /// place averages over the bin.
+    /// place averages over the bin. Refined cells share the bins of the one they refine.
     #[inline(always)]
     pub fn deposit_glossy(&self, landing: Landing, at: [f32; 2], leaving: &impl Leaving) {
-        let (level, place, groups) = (landing.level, landing.place, self.corners.groups());
+        let groups = self.corners.groups();
+        let (level, place) = self.layout.unrefined(landing.level, landing.place);
         let frame = Frame::new(self.layout.levels[level].surfaces[place].mean_normal());
         let per_quantum = self.per_quantum / COARSER;
-        let mut sums = self.glossy[level][place].lock().unwrap_or_else(PoisonError::into_inner);
+        let Some(sums) = self.glossy.get(level).and_then(|cells| cells.get(place)) else { return };
+        let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
         if sums.is_empty() {
             *sums = vec![[[0; LANES]; 3]; SETS * groups].into_boxed_slice();
         }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::accumulator::{Accumulator, CellSum, SETS, Sums};
 use super::bins::BinStore;
-use super::grid::Grid;
+use super::grid::{Grid, Vote};
 use super::index::{CellKey, LevelIndex};
 use super::layout::Layout;
 use super::mixed::mixed_cells;
@@ -39,28 +39,17 @@ impl Pyramid {
         let mut bins_time = clock.elapsed();
         let mixed = mixed_cells(layout, &sums.cells, &visible);
         let enough = 4 * u64::from(photons_per_cell);
-        let mut grid = layout.grid.clone();
-        let base = grid.base();
-        let divided = (base..grid.finest()).flat_map(|number| {
-            let level = &layout.grid.levels[number];
-            let (sums, mixed) = (&sums.cells, &mixed);
-            layout.levels[number].keys.iter().enumerate().filter_map(move |(place, key)| {
-                let count = sums[number][place].count;
-                let weight = if mixed[number][place] && count >= enough { 1000 } else { 1 };
-(count > 0).then(|| (number, key.cell(level).0, weight, count >= enough))
-            })
-        });
-        grid.prune(divided);
+        let grid = pruned_grid(layout, &sums, &mixed, enough);
         let mut store = BinStore::new(sums.bins);
         let mut levels: Vec<Level> = Vec::with_capacity(layout.levels.len());
         for (number, mixed) in mixed.iter().enumerate() {
             if !keep_going() {
                 return None;
             }
+            let key = |place: usize| layout.levels[number].keys[place].cell(&layout.grid.levels[number]);
             let parents = levels.last();
             let parent = |place: usize| -> Option<[&Cell; SETS]> {
-                let parents = parents?;
-                let (cell, class) = layout.levels[number].keys[place].cell(&layout.grid.levels[number]);
+                let (parents, (cell, class)) = (parents?, key(place));
                 let at = parents.index.find(layout.grid.parent(number, cell)?, class)?;
                 Some(std::array::from_fn(|set| &parents.cells[set][at]))
             };
@@ -69,50 +58,67 @@ impl Pyramid {
                 parent(place).filter(|[parent, _]| reads_parent(parent, layout, number, place))
             };
             let clock = Instant::now();
-            let exists = |place: usize| {
-                let level = &layout.grid.levels[number];
-                let (cell, _) = layout.levels[number].keys[place].cell(level);
-                number <= base || grid.is_divided(number - 1, level.lattice(cell) >> 1)
-            };
-            let glossy = push_bins(layout, number, &sums, &mut store, |place| exists(place) && read_above(place).is_none());
+            let glossy = push_bins(layout, number, &sums, &mut store, |place| read_above(place).is_none());
             bins_time += clock.elapsed();
-            let is_divided = |place: usize| {
-                let level = &layout.grid.levels[number];
-                let (cell, _) = layout.levels[number].keys[place].cell(level);
-                grid.is_divided(number, level.lattice(cell))
-            };
             let settle = |place: usize| -> [Cell; SETS] {
-                let enough = sums.cells[number][place].count >= enough && is_divided(place);
-                let parent = read_above(place);
+                let is_divided = grid.is_divided(number, layout.grid.levels[number].lattice(key(place).0));
+                let enough = sums.cells[number][place].count >= enough && is_divided;
+                let (parent, read_above) = (parent(place), read_above(place).is_some());
                 std::array::from_fn(|set| {
-                    let cell = match parent {
-                        Some(parent) => Cell::new(parent[set].irradiance(), parent[set].glossy()),
-                        None => own_cell(layout, number, place, &sums, set, glossy.get(&place).copied()),
+                    let parent = parent.map(|parent| parent[set]);
+                    // Direction bins are those of the finest level that is everywhere.
+                    let glossy = if number > grid.base() || read_above {
+                        parent.and_then(Cell::glossy)
+                    } else {
+                        glossy.get(&place).copied()
                     };
-                    cell.with(enough, mixed[place])
+                    let irradiance = match parent.filter(|_| read_above) {
+                        Some(parent) => parent.irradiance(),
+                        None => own_irradiance(layout, number, place, &sums, set),
+                    };
+                    Cell::new(irradiance, glossy).with(enough, mixed[place])
                 })
             };
-            let values: Vec<[Cell; SETS]> =
-                (0..layout.levels[number].keys.len()).into_par_iter().map(settle).collect();
-            levels.push(keep_lit(layout, &grid, number, &sums.cells[number], &values));
+            let places = 0..layout.levels[number].keys.len();
+            let values: Vec<[Cell; SETS]> = places.into_par_iter().map(settle).collect();
+            // Refined cells that would only repeat their parent are not worth their memory.
+            let is_kept = |place: usize| {
+                let is_read = || parent(place).is_some_and(|[parent, _]| parent.holds_enough());
+                sums.cells[number][place].count > 0 && (number <= grid.base() || is_read())
+            };
+            let level = keep(layout, number, is_kept, &values);
+            levels.push(level);
         }
         let per_finest_area = grid.levels[grid.finest()].cell_size.powi(-2);
         Some(Self { grid, classes: layout.classes, levels, store, bins_time, per_finest_area })
     }
 }
 
-/// A cell with its own light of one set.
-fn own_cell(
-    layout: &Layout,
-    number: usize,
-    place: usize,
-    sums: &Sums,
-    set: usize,
-    glossy: Option<u32>,
-) -> Cell {
+/// The grid, without refinements that hold too few photons: block by block, a level is worth reading where most of its
+/// cells' parents hold enough, or where one that does is mixed.
+fn pruned_grid(layout: &Layout, sums: &Sums, mixed: &[Vec<bool>], enough: u64) -> Grid {
+    let mut grid = layout.grid.clone();
+    let votes = (grid.base()..grid.finest()).flat_map(|number| {
+        let vote = move |(place, key): (usize, &CellKey)| {
+            let count = sums.cells[number][place].count;
+            let vote = match (count >= enough, mixed[number][place]) {
+                (true, true) => Vote::Needed,
+                (true, false) => Vote::For,
+                (false, _) => Vote::Against,
+            };
+            (count > 0).then(|| (number, key.cell(&layout.grid.levels[number]).0, vote))
+        };
+        layout.levels[number].keys.iter().enumerate().filter_map(vote)
+    });
+    grid.prune(votes);
+    grid
+}
+
+/// Irradiance of a cell from its own photons of one set.
+fn own_irradiance(layout: &Layout, number: usize, place: usize, sums: &Sums, set: usize) -> Rgb {
     let area = layout.levels[number].surfaces[place].area as f64 * layout.area_unit;
     let flux = sums.cells[number][place].flux[set];
-    Cell::new(Rgb(flux.map(|flux| (flux as f64 * sums.quantum / area) as f32)), glossy)
+    Rgb(flux.map(|flux| (flux as f64 * sums.quantum / area) as f32))
 }
 
 /// Whether a cell's parent is read in its place: where the photons are too few to tell, or the cell is a sliver of
@@ -157,7 +163,7 @@ fn merge(layout: &Layout, cells: &mut [Vec<CellSum>]) {
 /// Adds the bins of every glossy cell to its parent's, from the finest level up.
 fn merge_bins(layout: &Layout, sums: &mut Sums) {
     let frame = |level: usize, place: usize| Frame::new(layout.levels[level].surfaces[place].mean_normal());
-    for level in (1..layout.levels.len()).rev() {
+    for level in (1..sums.glossy.len()).rev() {
         let (coarser, finer) = sums.glossy.split_at_mut(level);
         for (&place, values) in &finer[0] {
             if let Some(parent) = layout.parent(level, place) {
@@ -171,15 +177,15 @@ fn merge_bins(layout: &Layout, sums: &mut Sums) {
     }
 }
 
-/// Cells without a photon need no memory: what is missing is dark where its parent holds enough photons to know, and
-/// else read from the parent.
-fn keep_lit(layout: &Layout, grid: &Grid, number: usize, sums: &[CellSum], values: &[[Cell; SETS]]) -> Level {
-    let level = &layout.grid.levels[number];
-    let exists = |place: usize| {
-        let (cell, _) = layout.levels[number].keys[place].cell(level);
-        number <= grid.base() || grid.is_divided(number - 1, level.lattice(cell) >> 1)
-    };
-    let places: Vec<usize> = (0..values.len()).filter(|&place| sums[place].count > 0 && exists(place)).collect();
+/// The cells worth their memory. Those without a photon are not: what is missing is dark where its parent holds enough
+/// photons to know, and else read from the parent.
+fn keep(
+    layout: &Layout,
+    number: usize,
+    is_kept: impl Fn(usize) -> bool + Sync,
+    values: &[[Cell; SETS]],
+) -> Level {
+    let places: Vec<usize> = (0..values.len()).into_par_iter().filter(|&place| is_kept(place)).collect();
     let keys = places.iter().map(|&place| -> CellKey { layout.levels[number].keys[place] });
     let index = LevelIndex::new(&layout.grid.levels[number], keys);
     let cells = std::array::from_fn(|set| places.iter().map(|&place| values[place][set]).collect());

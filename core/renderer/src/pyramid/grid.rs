@@ -67,6 +67,20 @@ pub struct Reading {
     pub cell_size: f32,
 }
 
+/// What a cell has to say about reading its children.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Vote {
+    /// They hold enough photons.
+    For,
+    /// They do not.
+    Against,
+    /// It cannot be read itself, whatever the others say.
+    Needed,
+}
+
+/// More than the cells of a block, classes and levels included, can cast against it.
+const MOST_VOTES: i64 = 1 << 24;
+
 /// Cells per edge of a brick.
 pub(super) const BRICK: i32 = 4;
 
@@ -143,19 +157,22 @@ impl Grid {
         }
     }
 
-    /// Leaves out, block by block, the levels below the base level that are not worth reading: `is_read` tells of a cell
-    /// of a level whether there is reason to read its children, or not; each block goes as deep as most of its cells say.
-    pub(super) fn prune(&mut self, divided: impl Iterator<Item = (usize, IVec3, u32, bool)>) {
+    /// Leaves out the refinements that cells vote against; `votes` are about the children of a cell of a level.
+    pub(super) fn prune(&mut self, votes: impl Iterator<Item = (usize, IVec3, Vote)>) {
         let deepest = self.finest() - self.base;
-        let mut votes = vec![[0_u32; 2]; self.refinements.len() * deepest];
-        for (level, cell, weight, worth) in divided {
-            let level_box = &self.levels[level];
+        let mut counted = vec![0_i64; self.refinements.len() * deepest];
+        for (level, cell, vote) in votes {
             let above = level - self.base;
-            let Some(cell) = self.levels[self.base].within(level_box.lattice(cell) >> above as i32) else { continue };
-            votes[self.block(cell) * deepest + above][usize::from(worth)] += weight;
+            let lattice = self.levels[level].lattice(cell) >> above as i32;
+            let Some(cell) = self.levels[self.base].within(lattice) else { continue };
+            counted[self.block(cell) * deepest + above] += match vote {
+                Vote::For => 1,
+                Vote::Against => -1,
+                Vote::Needed => MOST_VOTES,
+            };
         }
-        for (refinements, votes) in self.refinements.iter_mut().zip(votes.chunks(deepest.max(1))) {
-            let worth = votes.iter().take_while(|[against, for_it]| for_it > against).count() as u8;
+        for (refinements, counted) in self.refinements.iter_mut().zip(counted.chunks(deepest.max(1))) {
+            let worth = counted.iter().take_while(|&&votes| votes > 0).count() as u8;
             *refinements = worth.min(*refinements);
         }
     }

@@ -184,6 +184,17 @@ impl Layout {
         self.levels[level - 1].index.find(self.grid.parent(level, cell)?, class)
     }
 
+    /// The cell of a level that is everywhere which a cell lies in, or itself: level and place.
+    #[must_use]
+    pub(super) fn unrefined(&self, mut level: usize, mut place: usize) -> (usize, usize) {
+        while level > self.grid.base()
+            && let Some(parent) = self.parent(level, place)
+        {
+            (level, place) = (level - 1, parent);
+        }
+        (level, place)
+    }
+
     /// Memory (bytes).
     #[must_use]
     pub fn bytes(&self) -> usize {
