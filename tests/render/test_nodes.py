@@ -34,7 +34,7 @@ def noise_image(color_space: str = "Non-Color", alpha: bool = False) -> Any:
     return b_image
 
 
-def node_scene(make: Callable[[Any], Any]) -> bpy.types.Scene:
+def node_scene(make: Callable[[Any], Any], *, is_mirrored: bool = False) -> bpy.types.Scene:
     """A tilted plane that shows 2 + a quarter of the output `make` gives, so that negative values show too."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
@@ -55,14 +55,15 @@ def node_scene(make: Callable[[Any], Any]) -> bpy.types.Scene:
     )
     b_mesh.materials.append(b_material)
     b_object = build.add_object("Plane", b_mesh)
-    b_object.rotation_euler, b_object.scale = (0.5, 0.3, 0.2), (0.9, 1.0, 1.2)
+    b_object.rotation_euler = (0.5, 0.3, 0.2)
+    b_object.scale = (-0.9 if is_mirrored else 0.9, 1.0, 1.2)
     b_object.color, b_object.pass_index = (0.2, 0.4, 0.6, 0.5), 3
     return scene
 
 
-def difference(make: Callable[[Any], Any]) -> float:
+def difference(make: Callable[[Any], Any], *, is_mirrored: bool = False) -> float:
     """RMS difference between both engines' pictures, over the mean."""
-    scene = node_scene(make)
+    scene = node_scene(make, is_mirrored=is_mirrored)
     settings = {"film.filter": "box", "film.filter_width": 1.0, "photon_pass.photon_count": 1000}
     samples = {"gather.rays": SAMPLES, "gather.camera_samples": SAMPLES, "gather.light_samples": 1}
     pictures.use_rgp(scene, {**settings, **samples})
@@ -209,6 +210,45 @@ def test_map_range(interpolation: str) -> None:
     assert difference(output_of("MapRange", inputs=inputs, interpolation_type=interpolation)) < SMOOTH
 
 
+@pytest.mark.parametrize("interpolation", ["LINEAR", "SMOOTHSTEP"])
+@pytest.mark.parametrize("data_type", ["FLOAT", "FLOAT_VECTOR"])
+def test_map_range_of_nothing(interpolation: str, data_type: str) -> None:
+    suffix = "_FLOAT3" if data_type == "FLOAT_VECTOR" else ""
+
+    def make(b_tree: Any) -> Any:
+        b_node = b_tree.nodes.new("ShaderNodeMapRange")
+        b_node.data_type, b_node.interpolation_type, b_node.clamp = data_type, interpolation, False
+        b_image = b_tree.nodes.new("ShaderNodeTexImage")
+        b_image.image = noise_image()
+        build.connect(b_tree, b_image, b_node, "Vector" if suffix else "Value")
+        ends = (("From Min", 0.5), ("From Max", 0.5), ("To Min", 1.0), ("To Max", 3.0))
+        for name, value in ends:
+            identifier = name.replace(" ", "_") + suffix if suffix else name
+            build.socket(b_node.inputs, identifier).default_value = (value,) * 3 if suffix else value
+        return build.socket(b_node.outputs, "Vector" if suffix else "Result")
+
+    assert difference(make) < SMOOTH
+
+
+@pytest.mark.parametrize("extend", ["HORIZONTAL", "EXTRAPOLATED"])
+def test_curves_beyond_their_ends(extend: str) -> None:
+    def make(b_tree: Any) -> Any:
+        b_image = b_tree.nodes.new("ShaderNodeTexImage")
+        b_image.image = noise_image()
+        b_wide = b_tree.nodes.new("ShaderNodeVectorMath")
+        b_wide.operation = "MULTIPLY_ADD"
+        b_wide.inputs[1].default_value, b_wide.inputs[2].default_value = (3.0,) * 3, (-1.0,) * 3
+        b_tree.links.new(b_image.outputs[0], b_wide.inputs[0])
+        b_curves = b_tree.nodes.new("ShaderNodeRGBCurve")
+        b_curves.mapping.extend = extend
+        b_curves.mapping.curves[3].points.new(0.5, 0.7)
+        b_curves.mapping.update()
+        build.connect(b_tree, b_wide, b_curves, "Color")
+        return b_curves.outputs[0]
+
+    assert difference(make) < SMOOTH
+
+
 @pytest.mark.parametrize(
     ("kind", "output", "inputs", "properties"),
     [
@@ -319,8 +359,10 @@ def test_bump() -> None:
 
 
 @pytest.mark.parametrize("space", ["TANGENT", "OBJECT", "WORLD"])
-def test_normal_map(space: str) -> None:
-    assert difference(output_of("NormalMap", inputs={"Strength": 0.8, "Color": IMAGE}, space=space)) < SMOOTH
+@pytest.mark.parametrize("is_mirrored", [False, True])
+def test_normal_map(space: str, is_mirrored: bool) -> None:
+    make = output_of("NormalMap", inputs={"Strength": 0.8, "Color": IMAGE}, space=space)
+    assert difference(make, is_mirrored=is_mirrored) < SMOOTH
 
 
 def test_checker() -> None:

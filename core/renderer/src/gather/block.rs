@@ -16,7 +16,7 @@ use crate::sampling::{PixelSeeds, Rng, hash};
 use crate::scene::visibility;
 use crate::settings::GatherSampling;
 
-use super::camera::camera_ray;
+use super::camera::{CameraRay, camera_ray};
 use super::deferred::{Deferred, Target, Traces};
 use super::direct::{ShadowRay, Shares, lambert_shadow_ray, shadow_ray, transmittance};
 use super::lambert::LambertLanes;
@@ -102,7 +102,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         self.lambert.clear();
         self.has_vertices = false;
         self.others = [None; LANES];
-        let mut seeds = [0; LANES];
+        let (mut seeds, mut widths) = ([0; LANES], [g.camera_width; LANES]);
         for (lane, seed) in seeds.iter_mut().enumerate() {
             let (px, py) = (x + lane as u32 % BLOCK, y + lane as u32 / BLOCK);
             let (frame_x, frame_y) = (camera.region[0] + px, camera.region[1] + py);
@@ -119,24 +119,25 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             self.samples[lane] = PixelSample { offset, taken: true, ..Default::default() };
             let offset = DVec2::new(f64::from(offset[0]), f64::from(offset[1]));
             let position = DVec2::new(f64::from(frame_x), f64::from(frame_y)) + 0.5 + offset;
-            let (ray, far) = camera_ray(camera, g.lit, position);
+            let CameraRay { ray, far, travelled } = camera_ray(camera, g.lit, position);
+            widths[lane] = g.camera_width.further(travelled);
             self.packet.set(lane, &ray, far);
         }
         self.seeds = PixelSeeds::new(&seeds);
         g.lit.accel.intersect_packet(&mut self.packet);
-        for lane in 0..LANES {
+        for (lane, width) in widths.into_iter().enumerate() {
             if self.packet.is_set(lane) {
                 self.traces.rays.camera += 1;
                 let (ray, hit) = (self.packet.ray(lane), self.packet.hit(lane));
-                if !self.start_lambert(lane, &ray, hit) {
-                    self.follow_camera(lane, ray, hit);
+                if !self.start_lambert(lane, &ray, hit, width) {
+                    self.follow_camera(lane, ray, hit, width);
                 }
             }
         }
     }
 
     /// Takes the common case: the camera sees a surface that is nothing but a constant Lambert reflector.
-    fn start_lambert(&mut self, lane: usize, ray: &Ray, hit: Option<Hit>) -> bool {
+    fn start_lambert(&mut self, lane: usize, ray: &Ray, hit: Option<Hit>, width: Width) -> bool {
         let g = self.gatherer;
         let Some(hit) = hit.filter(|hit| !g.lit.accel.is_lamp(hit.object)) else { return false };
         let (ng, material) = g.lit.accel.triangle(hit.object, hit.primitive);
@@ -145,7 +146,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         }
         let albedo = match g.plain[material] {
             Some(albedo_over_pi) => albedo_over_pi * PI,
-            None => match g.lit.varying_albedo(material, ray, &hit, g.camera_width.at(hit.t)) {
+            None => match g.lit.varying_albedo(material, ray, &hit, width.at(hit.t)) {
                 Some(albedo) => albedo,
                 None => return false,
             },
@@ -157,10 +158,10 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         true
     }
 
-    fn follow_camera(&mut self, lane: usize, mut ray: Ray, hit: Option<Hit>) {
+    fn follow_camera(&mut self, lane: usize, mut ray: Ray, hit: Option<Hit>, width: Width) {
         let g = self.gatherer;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.sample) << 16 | 1));
-        let (kind, width) = (visibility::CAMERA, g.camera_width);
+        let kind = visibility::CAMERA;
         let mut sampled =
             Sampled { pdf: None, shares: Shares::EVEN, kind, light: None, lit_side: None, width };
         let owner = self.traces.meter.owner();
@@ -188,7 +189,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             self.traces.meter.count(Effect::MirrorsAndGlass, 1);
             throughput *= sample.weight;
             sampled.kind = ray_kind(&sample);
-            sampled.width.start = sampled.width.at(met.distance);
+            sampled.width = sampled.width.further(met.distance);
             ray = Ray::leaving(surface.p, surface.ng, sample.wi, sampled.kind | g.lit.accel.lamp_bit());
             self.traces.rays.camera += 1;
         }
@@ -239,11 +240,11 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     fn shadow(&self, lane: usize, u: [f32; 3]) -> Option<ShadowRay> {
         let g = self.gatherer;
         if self.lambert.set[lane] {
-            let sample = g.lit.lights.sample_direct(self.lambert.receiver(lane), u)?;
+            let sample = g.lit.sample_direct(self.lambert.receiver(lane), u)?;
             return lambert_shadow_ray(&self.lambert, lane, &sample, g.shares);
         }
         let vertex = self.vertices[lane].as_ref()?;
-        let sample = g.lit.lights.sample_direct(vertex.surface.receiver(), u)?;
+        let sample = g.lit.sample_direct(vertex.surface.receiver(), u)?;
         let mut shadow = shadow_ray(&vertex.surface, &sample, LobeSet::ALL, LobeSet::ALL, g.shares)?;
         shadow.radiance *= vertex.throughput;
         Some(shadow)

@@ -43,7 +43,7 @@ use crate::settings::{GatherSampling, RenderSettings};
 use crate::stats::{RayCounts, StoppedBy};
 
 use block::{Block, widest_stratum};
-use camera::camera_ray;
+use camera::{CameraRay, camera_ray};
 use convergence::Convergence;
 use deferred::{OpenTile, Traces};
 use direct::Shares;
@@ -108,6 +108,11 @@ impl Width {
 
     fn at(self, distance: f32) -> f32 {
         self.start + self.spread * distance
+    }
+
+    /// Of the rest of the ray, from a distance on.
+    fn further(self, distance: f32) -> Self {
+        Self { start: self.at(distance), ..self }
     }
 }
 
@@ -302,7 +307,7 @@ pub fn seen_points(lit: &LitScene<'_>, seed: u32) -> Vec<Vec3> {
         // The whole frame, so that a border crops the picture and changes nothing in it.
         let at = DVec2::new(f64::from(i % EDGE), f64::from(i / EDGE)) + 0.5;
         let position = at / f64::from(EDGE) * frame;
-        let (ray, _) = camera_ray(camera, lit, position);
+        let CameraRay { ray, .. } = camera_ray(camera, lit, position);
         let mut points = Vec::new();
         if let Some(surface) = first_scatterer(lit, ray, MAX_DEPTH, &mut rng) {
             points.push(surface.p);
