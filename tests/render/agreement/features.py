@@ -20,11 +20,6 @@ class Feature:
     build: Callable[[], bpy.types.Scene]
     box_filter: bool = False
 
-    @property
-    def group(self) -> str:
-        """What it is shown with."""
-        return self.name.split("/", 1)[0]
-
 
 def features() -> list[Feature]:
     """All that are compared, group by group."""
