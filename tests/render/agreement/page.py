@@ -66,7 +66,8 @@ figures are also in [agreement.json](agreement.json).
 
 {passed} of {len(rendered)} features agree: their means differ by at most {LARGEST_MEAN_DIFFERENCE:.0%}, and their
 pixels by at most {LARGEST_RMS:.0%} (RMS, of the mean) beyond the noise. The noise is known from {len(SEEDS)} pictures
-of each engine that differ in their seed. In the pictures ours is on the left, Cycles' on the right."""
+of each engine that differ in their seed. In the pictures ours is on the left, Cycles' on the right; nodes show
+a half and a quarter of their value."""
 
 
 def _table(rows: list[tuple[int, str, dict[str, Any]]]) -> str:
