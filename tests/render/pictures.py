@@ -13,6 +13,8 @@ import numpy as np
 import numpy.typing as npt
 import OpenEXR
 
+from scenes import common
+
 Picture = npt.NDArray[np.float64]
 
 
@@ -43,6 +45,21 @@ def use_rgp(scene: bpy.types.Scene, settings: Mapping[str, Any]) -> None:
     for name, value in settings.items():
         group, setting = name.split(".")
         setattr(getattr(scene.rgp, group), setting, value)
+
+
+def use_cycles(scene: bpy.types.Scene, samples: int, seed: int) -> None:
+    """Makes a clean Cycles the scene's engine, with samples that are independent from pixel to pixel and from seed to
+    seed."""
+    common.set_clean_settings(scene, samples)
+    scene.cycles.seed = seed
+    scene.cycles.sampling_pattern = "TABULATED_SOBOL"
+    scene.cycles.min_light_bounces = 3
+
+
+def use_box_filter(scene: bpy.types.Scene) -> None:
+    """Makes each pixel its own square, for both engines; `use_cycles` undoes it."""
+    scene.rgp.film.filter, scene.rgp.film.filter_width = "box", 1.0
+    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 1.0
 
 
 def read_channels(path: Path) -> dict[str, npt.NDArray[Any]]:

@@ -253,11 +253,11 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     fn shadow(&self, lane: usize, u: [f32; 3]) -> Option<ShadowRay> {
         let g = self.gatherer;
         if self.lambert.set[lane] {
-            let sample = g.lit.lights.sample_direct(self.lambert.receiver(lane), u)?;
+            let sample = g.lit.sample_direct(self.lambert.receiver(lane), u)?;
             return lambert_shadow_ray(&self.lambert, lane, &sample, g.shares);
         }
         let vertex = self.vertices[lane].as_ref()?;
-        let sample = g.lit.lights.sample_direct(vertex.surface.receiver(), u)?;
+        let sample = g.lit.sample_direct(vertex.surface.receiver(), u)?;
         let mut shadow = shadow_ray(&vertex.surface, &sample, LobeSet::ALL, LobeSet::ALL, g.shares)?;
         shadow.radiance *= vertex.throughput;
         Some(shadow)

@@ -283,7 +283,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         if !surface.bsdf.has(counted) {
             return Rgb::BLACK;
         }
-        let sample = self.lit.lights.sample_direct(surface.receiver(), u);
+        let sample = self.lit.sample_direct(surface.receiver(), u);
         let shadow = sample.and_then(|sample| shadow_ray(surface, &sample, lobes, counted, Shares::EVEN));
         let Some(shadow) = shadow else { return Rgb::BLACK };
         shadow.radiance * transmittance(self.lit, &shadow, traces)

@@ -116,7 +116,7 @@ impl<S: PhotonSink> Tracer<'_, S> {
     /// Follows one photon from its lamp; gives the number of segments traced.
     fn photon(&self, mut sampler: PhotonSampler, landed: &mut S::Batch, meter: &mut Meter) -> u64 {
         let u = [sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw()];
-        let Some(emission) = self.lit.lights.emit(u) else { return 0 };
+        let Some(emission) = self.lit.emit(u) else { return 0 };
         let flux = emission.flux * self.share;
         let leaving = match emission.normal {
             Some(normal) => {

@@ -372,6 +372,10 @@ fn place_lamp(record: LampRecord, space: &SceneSpace, problems: &mut Problems) -
         problems.add(&record.name, "its size is zero; the lamp is left out", 1);
         return None;
     }
+    if matches!(shape, LampShape::Spot { .. }) && scales.x.min(scales.y) <= 0.0 {
+        problems.add(&record.name, "its scale is zero across its cone; the lamp is left out", 1);
+        return None;
+    }
     let is_sun = matches!(shape, LampShape::Sun { .. });
     #[expect(clippy::cast_possible_truncation, reason = "the factor is a power of two")]
     let power = if is_sun { power } else { power * (space.scale * space.scale) as f32 };
