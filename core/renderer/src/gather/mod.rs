@@ -151,7 +151,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             rays: gather.rays,
             max_depth: gather.max_depth.max(E::LEAST_DEPTH),
             sampling: gather.sampling,
-            camera_set: set(gather.camera_samples, 1),
+            camera_set: StratifiedSet::unshared(gather.camera_samples),
             lens: lens.map(|lens| (lens, StratifiedSet::unshared(gather.camera_samples))),
             light_set: set(gather.camera_samples * gather.light_samples, 2),
             gather_set: set(gather.rays, 3),
