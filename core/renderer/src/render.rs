@@ -230,7 +230,7 @@ fn light<'a>(
 fn layout(lit: &LitScene<'_>, settings: &RenderSettings, progress: &Progress) -> Result<Layout, RenderError> {
     let scene = lit.accel.scene();
     let (rays, seed) = (settings.gather.rays, settings.render.seed);
-    let readings = if lit.plan.indirect() { gather::pilot(lit, rays, seed) } else { Vec::new() };
+    let readings = if lit.plan.indirect() { gather::readings(lit, rays, seed) } else { Vec::new() };
     let seen = seen_bounds(&readings, scene.bounds);
     let bounds = scene.bounds.map(Vec3::as_dvec3);
     let world_origin = -scene.space.center * scene.space.scale;

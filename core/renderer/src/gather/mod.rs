@@ -15,7 +15,7 @@ mod direct;
 mod floor;
 mod lambert;
 mod path;
-mod pilot;
+mod readings;
 mod pyramid_lookup;
 mod readable;
 mod stop;
@@ -47,7 +47,7 @@ use convergence::Convergence;
 use deferred::{OpenTile, Traces};
 use direct::Shares;
 pub use floor::{TraceFloor, trace_floor};
-pub use pilot::pilot;
+pub use readings::readings;
 pub use pyramid_lookup::PyramidLookup;
 pub use stop::Stop;
 

@@ -14,7 +14,7 @@ use crate::scene::visibility;
 
 /// Where the camera and gather rays, `rays` per pixel, see surface, and how fine the cells there should be: a pilot.
 #[must_use]
-pub fn pilot(lit: &LitScene<'_>, rays: u32, seed: u32) -> Vec<Reading> {
+pub fn readings(lit: &LitScene<'_>, rays: u32, seed: u32) -> Vec<Reading> {
     const EDGE: u32 = 64;
     const GATHER_RAYS: u32 = 16;
     const MAX_DEPTH: u32 = 8;
