@@ -16,7 +16,7 @@ use crate::error::RenderError;
 use crate::estimator::{Estimator, PhotonSink};
 use crate::film::Film;
 use crate::gather::{self, Gatherer, PyramidLookup, Stop, TraceFloor};
-use crate::light::Lights;
+use crate::light::{Environment, Lights};
 use crate::lit_scene::LitScene;
 use crate::photon_pass::{self, PyramidDeposits};
 use crate::progress::{Progress, Stage};
@@ -24,7 +24,7 @@ use crate::pyramid::{
     Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, SETS, SidePoint, SurfaceTriangle,
 };
 use crate::scene::Scene;
-use crate::settings::{EstimatorKind, RenderSettings, parse_bins};
+use crate::settings::{EstimatorKind, RenderSettings, Switch, parse_bins};
 use crate::shader::Texture;
 use crate::stats::{EstimatorStats, Stats, TextureCounts};
 
@@ -92,6 +92,7 @@ fn passes(
     if lit.plan.direct {
         stats.effects[Effect::DirectLight as usize].bytes = lit.lights.bytes();
     }
+    stats.effects[Effect::EnvironmentLight as usize].bytes = lit.lights.world_bytes();
     stats.effects[Effect::EmissiveMeshes as usize].bytes = lit.lights.emitter_bytes();
 
     let work = Work { lit: &lit, settings, film, progress };
@@ -217,12 +218,20 @@ fn light<'a>(
     let mut materials: Vec<PreparedMaterial> =
         MaterialTable::build(&scene.materials).iter().cloned().collect();
     let mut world = scene.world.clone();
+    let environment = if settings.effects.environment_light == Switch::Off {
+        None
+    } else {
+        Environment::new(&world, &scene.textures)
+    };
+    if environment.is_none() && world.program.is_some() && settings.effects.environment_light != Switch::Off {
+        world.blacken();
+    }
     let plan = EffectsPlan::new(scene, &settings.effects, &mut materials, &mut world);
     let emission: Vec<_> = materials.iter().map(PreparedMaterial::emission).collect();
-    let lights = Lights::with_world(scene, &emission, &world);
+    let lights = Lights::with_world(scene, &emission, &world, environment);
     let proxies = lights.lamp_proxies();
     let accel = Accel::build(scene, &proxies, library, settings.render.threads as usize, progress)?;
-    Ok(LitScene { accel, materials, lights, world, plan })
+    Ok(LitScene { accel, materials, lights, plan })
 }
 
 /// The cells, over what the camera and its gather rays see.

@@ -6,8 +6,10 @@
 
 mod area;
 mod cluster;
+mod direction_table;
 mod distant;
 mod emitter;
+mod environment;
 mod point;
 mod proxy;
 mod select;
@@ -29,6 +31,7 @@ use crate::scene::{Scene, World};
 use cluster::Cluster;
 use distant::SceneBall;
 use emitter::MeshEmitter;
+pub use environment::Environment;
 pub use proxy::LampProxy;
 use select::{Cdf, Choice};
 use shape::{Light, Shape};
@@ -155,8 +158,6 @@ pub struct Lights {
     /// Index into `lights` of each object that emits.
     light_of_object: Vec<Option<usize>>,
     world: WorldLight,
-    /// The world emits, be it seen by photons or not.
-    has_world: bool,
     ball: SceneBall,
     /// Over `lights` and then the world, by flux: the choice of photons.
     by_flux: Option<Cdf>,
@@ -168,12 +169,18 @@ impl Lights {
     /// Lamps without power or size are left out; negative channels count as zero.
     #[must_use]
     pub fn build(scene: &Scene, emission: &[Rgb]) -> Self {
-        Self::with_world(scene, emission, &scene.world)
+        let environment = Environment::new(&scene.world, &scene.textures);
+        Self::with_world(scene, emission, &scene.world, environment)
     }
 
-    /// As [`Lights::build`], in another world than the scene's own.
+    /// As [`Lights::build`], in another world than the scene's own; `environment` is what its program gives.
     #[must_use]
-    pub fn with_world(scene: &Scene, emission: &[Rgb], world: &World) -> Self {
+    pub fn with_world(
+        scene: &Scene,
+        emission: &[Rgb],
+        world: &World,
+        environment: Option<Environment>,
+    ) -> Self {
         let emission: Vec<Rgb> = emission.iter().map(|&radiance| positive(radiance)).collect();
         let mut lights: Vec<Light> = scene
             .lamps
@@ -190,8 +197,7 @@ impl Lights {
             }
         }
         let ball = SceneBall::new(scene.bounds);
-        let has_world = !positive(world.radiance).is_black();
-        let world = WorldLight::new(world);
+        let world = WorldLight::new(world, environment);
         let mut fluxes: Vec<Rgb> = lights.iter().map(|light| light.flux(&ball)).collect();
         fluxes.push(world.flux(&ball));
         let means: Vec<f64> = fluxes.iter().map(|flux| f64::from(flux.mean())).collect();
@@ -212,7 +218,6 @@ impl Lights {
             lights,
             light_of_object,
             world,
-            has_world,
             ball,
             by_flux: Cdf::with_even_share(&means),
             total_flux: fluxes.into_iter().sum(),
@@ -222,7 +227,7 @@ impl Lights {
     /// True when nothing emits at all, the world included.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.lights.is_empty() && !self.has_world
+        self.lights.is_empty() && self.world.is_black()
     }
 
     /// Memory (bytes) of the tables over the triangles of emissive meshes.
@@ -237,6 +242,18 @@ impl Lights {
     pub fn bytes(&self) -> usize {
         let tables = self.by_flux.as_ref().map_or(0, Cdf::bytes) + self.tree.bytes();
         self.lights.len() * size_of::<Light>() + self.emitters.len() * size_of::<Emitter>() + tables
+    }
+
+    /// Memory (bytes) of what is known about the world.
+    #[must_use]
+    pub fn world_bytes(&self) -> usize {
+        self.world.bytes()
+    }
+
+    /// True where light comes from outside the scene, suns aside.
+    #[must_use]
+    pub fn has_world(&self) -> bool {
+        !self.world.is_black()
     }
 
     /// Flux emitted into the scene (W × squared length scale), the world included.
@@ -284,18 +301,25 @@ impl Lights {
             lit_from: photon.lit_from,
             casts_shadow: light.is_none_or(|light| light.casts_shadow),
             lamp: light.and_then(|light| light.lamp),
-            visibility: light.map_or(u32::MAX, |light| light.visibility),
+            visibility: light.map_or(self.world.visibility, |light| light.visibility),
         })
     }
 
-    /// A direction from the receiver towards a lamp or an emissive triangle: `u[0]` chooses it, `u[1..3]` the place on it.
+    /// A direction from the receiver towards a lamp, an emissive triangle or a world that is not the same on all sides:
+    /// `u[0]` chooses it, `u[1..3]` the place on it.
     /// `None` where the sample contributes nothing.
     #[must_use]
     pub fn sample_direct(&self, receiver: impl Into<Receiver>, u: [f32; 3]) -> Option<DirectSample> {
         let [choice, position @ ..] = u;
         let receiver = receiver.into();
         let p = receiver.p;
+        let of_world = self.world_share(&receiver);
+        if choice < of_world {
+            return self.sample_world(of_world, position);
+        }
+        let choice = if of_world > 0.0 { (choice - of_world) / (1.0 - of_world) } else { choice };
         let chosen = self.choose(&receiver, choice)?;
+        let probability = chosen.probability * (1.0 - of_world);
         let emitter = &self.emitters[chosen.index];
         let light = &self.lights[emitter.light as usize];
         let sample = match &light.shape {
@@ -307,8 +331,8 @@ impl Lights {
         Some(DirectSample {
             wi: sample.wi,
             distance: sample.distance,
-            radiance_over_pdf: sample.radiance_over_pdf / chosen.probability,
-            pdf_solid_angle: sample.pdf * chosen.probability,
+            radiance_over_pdf: sample.radiance_over_pdf / probability,
+            pdf_solid_angle: sample.pdf * probability,
             is_delta: sample.is_delta || !light.casts_shadow,
             casts_shadow: light.casts_shadow,
             visibility: light.visibility,
@@ -384,6 +408,43 @@ impl Lights {
         }
     }
 
+    /// What a ray that leaves the scene sees of the world, suns aside, and the pdf per solid angle with which
+    /// [`Lights::sample_direct`] from `from` finds this direction: 0 where it never does.
+    #[must_use]
+    pub fn world_seen(&self, from: impl Into<Receiver>, wi: Vec3, ray_kind_bit: u32) -> (Rgb, f32) {
+        let sampled = self.world.sampled().filter(|sampled| sampled.sampled() & ray_kind_bit != 0);
+        let pdf = sampled.map_or(0.0, |sampled| sampled.pdf(wi) * self.world_share(&from.into()));
+        (self.world.seen(wi, ray_kind_bit), pdf)
+    }
+
+    /// Probability with which the world is sampled and not another light: its share of the irradiance, about.
+    fn world_share(&self, receiver: &Receiver) -> f32 {
+        const BOUNDS: [f32; 2] = [0.1, 0.9];
+        let Some(environment) = self.world.sampled() else { return 0.0 };
+        if self.emitters.is_empty() {
+            return 1.0;
+        }
+        // Half of what comes from all sides is above the surface, and that at a mean cosine of a half.
+        let of_world = 0.25 * environment.fluence().mean();
+        let share = of_world
+            / (of_world + self.tree.irradiance(receiver, |index| self.irradiance_estimate(receiver, index)));
+        if share.is_finite() { share.clamp(BOUNDS[0], BOUNDS[1]) } else { 0.5 }
+    }
+
+    fn sample_world(&self, probability: f32, u: [f32; 2]) -> Option<DirectSample> {
+        let environment = self.world.sampled()?;
+        let sample = environment.sample(u);
+        Some(DirectSample {
+            wi: sample.wi,
+            distance: sample.distance,
+            radiance_over_pdf: sample.radiance_over_pdf / probability,
+            pdf_solid_angle: sample.pdf * probability,
+            is_delta: false,
+            casts_shadow: true,
+            visibility: environment.sampled(),
+        })
+    }
+
     /// The emitter that `u` in 0..1 chooses to light the receiver.
     fn choose(&self, receiver: &Receiver, u: f32) -> Option<Choice> {
         if self.emitters.len() == 1 {
@@ -392,12 +453,14 @@ impl Lights {
         self.tree.choose(receiver, u, |index| self.irradiance_estimate(receiver, index))
     }
 
-    /// Probability with which [`Lights::choose`] chooses an emitter.
+    /// Probability with which [`Lights::sample_direct`] chooses an emitter.
     fn choice_probability(&self, receiver: &Receiver, index: usize) -> f32 {
-        if self.emitters.len() == 1 {
-            return 1.0;
-        }
-        self.tree.probability(receiver, index, |index| self.irradiance_estimate(receiver, index))
+        let among_emitters = if self.emitters.len() == 1 {
+            1.0
+        } else {
+            self.tree.probability(receiver, index, |index| self.irradiance_estimate(receiver, index))
+        };
+        among_emitters * (1.0 - self.world_share(receiver))
     }
 
     /// About the irradiance an emitter gives the receiver; 0 only where there is none.

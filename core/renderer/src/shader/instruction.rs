@@ -107,6 +107,8 @@ pub enum Instruction {
         interpolation: Interpolation,
         unassociate: bool,
     },
+    /// Where a direction lies in an equirectangular panorama, or in the picture of a mirror ball.
+    Panorama { vector: Register, ball: bool },
     /// A texture projected along the object's three axes, by the normal; `vector` in the object's space.
     BoxImage {
         texture: u32,
@@ -186,6 +188,7 @@ impl Instruction {
             Self::Constant { .. } | Self::Attribute { .. } | Self::Geometry { .. } => smallvec![],
             Self::Transform { vector, .. }
             | Self::Normalize { vector }
+            | Self::Panorama { vector, .. }
             | Self::Image { vector, .. }
             | Self::Gradient { vector, .. } => smallvec![vector],
             Self::Mapping { vector, location, rotation, scale } => {

@@ -10,6 +10,7 @@
 mod arithmetic;
 mod instruction;
 mod noise;
+mod panorama;
 mod pattern;
 mod run;
 mod surface;
@@ -103,6 +104,25 @@ impl Program {
     #[must_use]
     pub fn len(&self) -> usize {
         self.0.len()
+    }
+
+    /// True where something asked of the point is one of `quantities`.
+    #[must_use]
+    pub fn asks(&self, quantities: &[Quantity]) -> bool {
+        let is_asked = |step: &Instruction| matches!(step, Instruction::Geometry { quantity, .. } if quantities.contains(quantity));
+        self.0.iter().any(is_asked)
+    }
+
+    /// Texels from left to right of the widest texture that is looked up; 0 without textures.
+    #[must_use]
+    pub fn widest_texture(&self, textures: &[Texture]) -> usize {
+        let width = |step: &Instruction| match *step {
+            Instruction::Image { texture, .. } | Instruction::BoxImage { texture, .. } => {
+                textures[texture as usize].size()[0]
+            }
+            _ => 0,
+        };
+        self.0.iter().map(width).max().unwrap_or(0)
     }
 
     /// True where nothing is computed.

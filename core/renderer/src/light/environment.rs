@@ -1,0 +1,170 @@
+//! A world whose light differs from direction to direction. Its radiance is what the program says, wherever a ray leaves the
+//! scene; a table of it decides where surfaces and photons look for light.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::direction_table::{self, DirectionTable};
+use super::{LightSample, positive};
+use crate::color::Rgb;
+use crate::scene::{World, WorldProgram, visibility};
+use crate::shader::{Aside, Point, Quantity, Texture, Value};
+
+/// Columns of the table where no texture asks for more, and most of them.
+const COLUMNS: [usize; 2] = [512, 2048];
+
+/// Looks at the world per cell, along each side: twice as many as texels, which tells the mean of what is bilinear exactly.
+const LOOKS: usize = 2;
+
+/// What lets different surfaces see different worlds.
+const ASKS_KIND: [Quantity; 3] = [Quantity::IsDiffuse, Quantity::IsGlossy, Quantity::IsTransmission];
+
+/// The light of a world with a program.
+#[derive(Clone, Debug)]
+pub struct Environment {
+    program: WorldProgram,
+    textures: Arc<[Texture]>,
+    table: DirectionTable,
+    /// Irradiance from all sides (W·m⁻²): the integral of the radiance over all directions.
+    fluence: Rgb,
+    /// Ray kinds whose light is sampled; other rays meet it by themselves.
+    sampled: u32,
+}
+
+impl Environment {
+    /// Looks at a world in all directions. `None` where it has no program, or is black.
+    #[must_use]
+    pub fn new(world: &World, textures: &Arc<[Texture]>) -> Option<Self> {
+        let program = world.program.clone()?;
+        let widest = program.program.widest_texture(textures);
+        let columns = widest.next_power_of_two().clamp(COLUMNS[0], COLUMNS[1]);
+        let rows = columns / 2;
+        let texel = std::f32::consts::PI / (rows * LOOKS) as f32;
+        let look = |column: usize, row: usize| {
+            let at = |cell: usize, count: usize, i: usize| {
+                (cell as f32 + (i as f32 + 0.5) / LOOKS as f32) / count as f32
+            };
+            let places =
+                (0..LOOKS * LOOKS).map(|i| [at(column, columns, i % LOOKS), at(row, rows, i / LOOKS)]);
+            let seen = places.map(|place| {
+                let direction = direction_table::direction(place);
+                radiance(&program, textures, &Sight { direction, kind: visibility::DIFFUSE, width: texel })
+            });
+            seen.sum::<Rgb>() / (LOOKS * LOOKS) as f32
+        };
+        let (weights, fluxes): (Vec<Vec<f32>>, Vec<Rgb>) = (0..rows)
+            .into_par_iter()
+            .map(|row| {
+                let cells: Vec<Rgb> = (0..columns).map(|column| look(column, row)).collect();
+                let area = direction_table::row_area(row, rows) / columns as f32;
+                (cells.iter().map(|cell| cell.mean()).collect(), cells.into_iter().sum::<Rgb>() * area)
+            })
+            .unzip();
+        let table = DirectionTable::new(columns, &weights.concat())?;
+        let sees_as_diffuse = if program.program.asks(&ASKS_KIND) { visibility::DIFFUSE } else { u32::MAX };
+        Some(Self {
+            table,
+            fluence: fluxes.into_iter().sum(),
+            sampled: world.visibility & sees_as_diffuse & !visibility::CAMERA,
+            textures: Arc::clone(textures),
+            program,
+        })
+    }
+
+    /// Memory (bytes) of the table.
+    #[must_use]
+    pub const fn bytes(&self) -> usize {
+        self.table.bytes()
+    }
+
+    /// Integral of the radiance over all directions (W·m⁻²).
+    pub(super) fn fluence(&self) -> Rgb {
+        self.fluence
+    }
+
+    /// Ray kinds whose light [`Environment::sample`] finds.
+    pub(super) fn sampled(&self) -> u32 {
+        self.sampled
+    }
+
+    /// Radiance (W·m⁻²·sr⁻¹) that a ray of one kind sees along `direction`.
+    pub(super) fn radiance(&self, direction: Vec3, kind: u32) -> Rgb {
+        radiance(&self.program, &self.textures, &Sight { direction, kind, width: 0.0 })
+    }
+
+    /// A direction, by how bright it is, with the radiance diffuse surfaces see there.
+    pub(super) fn sample(&self, u: [f32; 2]) -> LightSample {
+        let (wi, pdf) = self.table.sample(u);
+        let radiance_over_pdf = self.radiance(wi, visibility::DIFFUSE) / pdf;
+        LightSample { wi, distance: f32::INFINITY, radiance_over_pdf, pdf, is_delta: false }
+    }
+
+    /// Pdf per solid angle of [`Environment::sample`].
+    pub(super) fn pdf(&self, wi: Vec3) -> f32 {
+        self.table.pdf(wi)
+    }
+}
+
+fn radiance(program: &WorldProgram, textures: &[Texture], sight: &Sight) -> Rgb {
+    positive(program.program.run(sight, textures)[program.radiance as usize].rgb())
+}
+
+/// A direction as a program sees it: as in Cycles, positions are the direction itself, and normals face the viewer.
+struct Sight {
+    /// Unit vector away from the viewer.
+    direction: Vec3,
+    /// Kind of the ray.
+    kind: u32,
+    /// Width (rad).
+    width: f32,
+}
+
+impl Sight {
+    fn is(&self, kind: u32) -> Value {
+        Value::number(f32::from(u8::from(self.kind & kind != 0)))
+    }
+}
+
+impl Point for Sight {
+    fn attribute(&self, _attribute: u32, _aside: Aside) -> Value {
+        Value::default()
+    }
+
+    fn geometry(&self, quantity: Quantity, _aside: Aside) -> Value {
+        match quantity {
+            Quantity::Position | Quantity::ObjectPosition => {
+                Value { width: self.width, ..Value::vector(self.direction) }
+            }
+            Quantity::Normal
+            | Quantity::ObjectNormal
+            | Quantity::TrueNormal
+            | Quantity::Incoming
+            | Quantity::Reflection => Value { width: self.width, ..Value::vector(-self.direction) },
+            Quantity::IsCamera => self.is(visibility::CAMERA),
+            Quantity::IsShadow => self.is(visibility::SHADOW),
+            Quantity::IsDiffuse => self.is(visibility::DIFFUSE),
+            Quantity::IsGlossy => self.is(visibility::GLOSSY),
+            Quantity::IsTransmission => self.is(visibility::TRANSMISSION),
+            Quantity::Parametric
+            | Quantity::Backfacing
+            | Quantity::ObjectLocation
+            | Quantity::ObjectColor
+            | Quantity::ObjectIndex
+            | Quantity::ObjectRandom => Value::default(),
+        }
+    }
+
+    fn steps(&self) -> [Vec3; 2] {
+        [Vec3::ZERO; 2]
+    }
+
+    fn tangents(&self, _attribute: u32) -> Option<[Vec3; 3]> {
+        None
+    }
+
+    fn world_normal(&self, normal: Vec3) -> Vec3 {
+        normal
+    }
+}
