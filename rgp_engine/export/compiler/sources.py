@@ -7,6 +7,7 @@ from ..coordinates import matrix_array
 from ..nodes import Output
 from .images import texture_of, unassociates
 from .mapping import own_mapping
+from .sky import sky_texture
 
 if TYPE_CHECKING:
     from .compiler import Compiler, Operand, Register
@@ -231,6 +232,7 @@ def _known(emit: "Callable[[Compiler, Output], Operand | None]") -> "Callable[[C
 NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
     "TEX_IMAGE": _image,
     "TEX_ENVIRONMENT": _environment,
+    "TEX_SKY": sky_texture,
     "UVMAP": _uv_map,
     "TEX_COORD": _texture_coordinate,
     "NEW_GEOMETRY": _geometry,
@@ -246,7 +248,7 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
 """Instructions of the nodes that look at the hit."""
 
 SOURCES: "dict[str, Callable[[Compiler, Output], bool]]" = {
-    **dict.fromkeys(("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP"), _always),
+    **dict.fromkeys(("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP", "TEX_SKY"), _always),
     "TEX_IMAGE": lambda c, source: (
         texture_of(c, source.b_node) is not None and source.b_node.projection in ("FLAT", "BOX")
     ),

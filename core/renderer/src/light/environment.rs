@@ -15,6 +15,9 @@ use crate::shader::{Aside, Point, Quantity, Texture, Value};
 /// Columns of the table where no texture asks for more, and most of them.
 const COLUMNS: [usize; 2] = [512, 2048];
 
+/// A cell of the coarsest table is divided where it gives so many times more light than cells do on average.
+const BRIGHT: f32 = 3.0;
+
 /// Looks at the world per cell, along each side: twice as many as texels, which tells the mean of what is bilinear exactly.
 const LOOKS: usize = 2;
 
@@ -38,35 +41,17 @@ impl Environment {
     #[must_use]
     pub fn new(world: &World, textures: &Arc<[Texture]>) -> Option<Self> {
         let program = world.program.clone()?;
-        let widest = program.program.widest_texture(textures);
-        let columns = widest.next_power_of_two().clamp(COLUMNS[0], COLUMNS[1]);
+        let columns = program.program.columns(textures).next_power_of_two().clamp(COLUMNS[0], COLUMNS[1]);
         let rows = columns / 2;
-        let texel = std::f32::consts::PI / (rows * LOOKS) as f32;
-        let look = |column: usize, row: usize| {
-            let at = |cell: usize, count: usize, i: usize| {
-                (cell as f32 + (i as f32 + 0.5) / LOOKS as f32) / count as f32
-            };
-            let places =
-                (0..LOOKS * LOOKS).map(|i| [at(column, columns, i % LOOKS), at(row, rows, i / LOOKS)]);
-            let seen = places.map(|place| {
-                let direction = direction_table::direction(place);
-                radiance(&program, textures, &Sight { direction, kind: visibility::DIFFUSE, width: texel })
-            });
-            seen.sum::<Rgb>() / (LOOKS * LOOKS) as f32
-        };
-        let (weights, fluxes): (Vec<Vec<f32>>, Vec<Rgb>) = (0..rows)
-            .into_par_iter()
-            .map(|row| {
-                let cells: Vec<Rgb> = (0..columns).map(|column| look(column, row)).collect();
-                let area = direction_table::row_area(row, rows) / columns as f32;
-                (cells.iter().map(|cell| cell.mean()).collect(), cells.into_iter().sum::<Rgb>() * area)
-            })
-            .unzip();
-        let table = DirectionTable::new(columns, &weights.concat())?;
+        let cells = Survey { program: &program, textures }.cells(columns);
+        let area = |i: usize| direction_table::row_area(i / columns, rows) / columns as f32;
+        let fluence = cells.iter().enumerate().map(|(i, &cell)| cell * area(i)).sum();
+        let weights: Vec<f32> = cells.iter().map(|cell| cell.mean()).collect();
+        let table = DirectionTable::new(columns, &weights)?;
         let sees_as_diffuse = if program.program.asks(&ASKS_KIND) { visibility::DIFFUSE } else { u32::MAX };
         Some(Self {
             table,
-            fluence: fluxes.into_iter().sum(),
+            fluence,
             sampled: world.visibility & sees_as_diffuse & !visibility::CAMERA,
             textures: Arc::clone(textures),
             program,
@@ -104,6 +89,46 @@ impl Environment {
     /// Pdf per solid angle of [`Environment::sample`].
     pub(super) fn pdf(&self, wi: Vec3) -> f32 {
         self.table.pdf(wi)
+    }
+}
+
+/// Looking at a world in all directions.
+struct Survey<'a> {
+    program: &'a WorldProgram,
+    textures: &'a [Texture],
+}
+
+impl Survey<'_> {
+    /// Mean radiance of each of `columns` × `columns` / 2 cells. Only what is bright is looked at as closely as that.
+    fn cells(&self, columns: usize) -> Vec<Rgb> {
+        let (coarse, parts) = (COLUMNS[0], columns / COLUMNS[0]);
+        let cells: Vec<Rgb> = (0..coarse * coarse / 2)
+            .into_par_iter()
+            .map(|i| self.mean([i % coarse, i / coarse], coarse))
+            .collect();
+        let area = |i: usize| direction_table::row_area(i / coarse, coarse / 2);
+        let flux = |i: usize| cells[i].mean() * area(i);
+        let bright = BRIGHT * (0..cells.len()).map(flux).sum::<f32>() / cells.len() as f32;
+        (0..columns * columns / 2)
+            .into_par_iter()
+            .map(|i| {
+                let [x, y] = [i % columns, i / columns];
+                let within = y / parts * coarse + x / parts;
+                if parts > 1 && flux(within) > bright { self.mean([x, y], columns) } else { cells[within] }
+            })
+            .collect()
+    }
+
+    /// Mean radiance of a cell.
+    fn mean(&self, cell: [usize; 2], columns: usize) -> Rgb {
+        let width = std::f32::consts::TAU / (columns * LOOKS) as f32;
+        let looks = (0..LOOKS * LOOKS).map(|i| {
+            let at = |axis: usize, i: usize| cell[axis] as f32 + (i as f32 + 0.5) / LOOKS as f32;
+            let (x, y) = (at(0, i % LOOKS) / columns as f32, at(1, i / LOOKS) / (columns / 2) as f32);
+            let direction = direction_table::direction([x, y]);
+            radiance(self.program, self.textures, &Sight { direction, kind: visibility::DIFFUSE, width })
+        });
+        looks.sum::<Rgb>() / (LOOKS * LOOKS) as f32
     }
 }
 

@@ -4,12 +4,14 @@
 //!
 //! All is in scene space. Lamps have Blender's units and agree with Cycles: see each file for its formulas.
 
+mod aim;
 mod area;
 mod cluster;
 mod direction_table;
 mod distant;
 mod emitter;
 mod environment;
+mod far;
 mod point;
 mod proxy;
 mod select;
@@ -28,6 +30,8 @@ use glam::Vec3;
 
 use crate::color::Rgb;
 use crate::scene::{Scene, World};
+use aim::Aim;
+pub use aim::Find;
 use cluster::Cluster;
 use distant::SceneBall;
 use emitter::MeshEmitter;
@@ -159,8 +163,12 @@ pub struct Lights {
     light_of_object: Vec<Option<usize>>,
     world: WorldLight,
     ball: SceneBall,
-    /// Over `lights` and then the world, by flux: the choice of photons.
-    by_flux: Option<Cdf>,
+    /// Of `lights` and then the world: how often photons choose them, by default by their flux.
+    photon_weights: Vec<f64>,
+    /// The choice by these weights.
+    by_weight: Option<Cdf>,
+    /// How the photons of each of them are aimed.
+    aims: Vec<Option<Aim>>,
     total_flux: Rgb,
 }
 
@@ -219,7 +227,9 @@ impl Lights {
             light_of_object,
             world,
             ball,
-            by_flux: Cdf::with_even_share(&means),
+            by_weight: Cdf::with_even_share(&means),
+            aims: vec![None; means.len()],
+            photon_weights: means,
             total_flux: fluxes.into_iter().sum(),
         }
     }
@@ -240,7 +250,7 @@ impl Lights {
     /// Memory (bytes) of all but [`Lights::emitter_bytes`].
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let tables = self.by_flux.as_ref().map_or(0, Cdf::bytes) + self.tree.bytes();
+        let tables = self.by_weight.as_ref().map_or(0, Cdf::bytes) + self.tree.bytes();
         self.lights.len() * size_of::<Light>() + self.emitters.len() * size_of::<Emitter>() + tables
     }
 
@@ -278,31 +288,46 @@ impl Lights {
         self.lights.iter().filter_map(proxy).collect()
     }
 
-    /// One photon: `u[0]` chooses the light by flux, `u[1..3]` the place, `u[3..5]` the direction. `None` when nothing
+    /// One photon: `u[0]` chooses the light, `u[1..3]` the place, `u[3..5]` the direction. `None` when nothing
     /// emits into the scene.
     #[must_use]
     pub fn emit(&self, u: [f32; 5]) -> Option<Emission> {
-        let [choice, position @ .., d0, d1] = u;
-        let direction = [d0, d1];
-        let chosen = self.by_flux.as_ref()?.choose(choice);
-        let light = self.lights.get(chosen.index);
+        let [choice, numbers @ ..] = u;
+        let chosen = self.by_weight.as_ref()?.choose(choice);
+        let emission = self.emission(chosen.index, chosen.rest, numbers);
+        Some(Emission { flux: emission.flux / chosen.probability, ..emission })
+    }
+
+    /// A photon of one light, which is then not chosen: its flux is that of the light. Lights are numbered as by
+    /// [`Lights::distant`].
+    #[must_use]
+    pub fn emit_from(&self, light: usize, numbers: [f32; 4]) -> Emission {
+        self.emission(light, 0.0, numbers)
+    }
+
+    /// `choice` is for lights of many parts.
+    fn emission(&self, index: usize, choice: f32, numbers: [f32; 4]) -> Emission {
+        let (numbers, density) = self.aims[index].as_ref().map_or((numbers, 1.0), |aim| aim.warp(numbers));
+        let [x, y, d0, d1] = numbers;
+        let (position, direction) = ([x, y], [d0, d1]);
+        let light = self.lights.get(index);
         let photon = match light.map(|light| &light.shape) {
             None => self.world.emit(&self.ball, position, direction),
             Some(Shape::Point(lamp)) => lamp.emit(position, direction),
             Some(Shape::Area(lamp)) => lamp.emit(position, direction),
             Some(Shape::Sun(lamp)) => lamp.emit(&self.ball, position, direction),
-            Some(Shape::Mesh(mesh)) => mesh.emit(chosen.rest, position, direction),
+            Some(Shape::Mesh(mesh)) => mesh.emit(choice, position, direction),
         };
-        Some(Emission {
+        Emission {
             origin: photon.origin,
             direction: photon.direction,
-            flux: photon.flux / chosen.probability,
+            flux: photon.flux / density,
             normal: photon.normal,
             lit_from: photon.lit_from,
             casts_shadow: light.is_none_or(|light| light.casts_shadow),
             lamp: light.and_then(|light| light.lamp),
             visibility: light.map_or(self.world.visibility, |light| light.visibility),
-        })
+        }
     }
 
     /// A direction from the receiver towards a lamp, an emissive triangle or a world that is not the same on all sides:

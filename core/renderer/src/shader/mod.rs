@@ -113,13 +113,15 @@ impl Program {
         self.0.iter().any(is_asked)
     }
 
-    /// Texels from left to right of the widest texture that is looked up; 0 without textures.
+    /// In how many columns a panorama must be divided to show all details: those of the widest texture, or about four across
+    /// a sun; 0 without either.
     #[must_use]
-    pub fn widest_texture(&self, textures: &[Texture]) -> usize {
+    pub fn columns(&self, textures: &[Texture]) -> usize {
         let width = |step: &Instruction| match *step {
             Instruction::Image { texture, .. } | Instruction::BoxImage { texture, .. } => {
                 textures[texture as usize].size()[0]
             }
+            Instruction::SunDisk { radius, .. } => (4.0 * std::f32::consts::PI / radius.max(1e-6)) as usize,
             _ => 0,
         };
         self.0.iter().map(width).max().unwrap_or(0)

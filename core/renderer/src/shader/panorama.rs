@@ -33,6 +33,34 @@ fn mirror_ball(d: Vec3) -> [f32; 2] {
     [0.5 * (half.x + 1.0), 0.5 * (half.z + 1.0)]
 }
 
+/// How much darker the limb of the sun is than its middle.
+const LIMB: f32 = 0.6;
+
+/// The sun as the Sky Texture shows it; see [`super::Instruction::SunDisk`].
+pub(super) struct SunDisk {
+    pub(super) towards: [f32; 3],
+    pub(super) radius: f32,
+    pub(super) bottom: [f32; 3],
+    pub(super) top: [f32; 3],
+    pub(super) lowest: f32,
+}
+
+impl SunDisk {
+    /// Its radiance along a direction. Looked at broadly it is as much larger and fainter.
+    pub(super) fn seen(&self, direction: Value) -> Value {
+        let (d, towards) = (direction.v.truncate().normalize_or_zero(), Vec3::from(self.towards));
+        let angle = 2.0 * (0.5 * (d - towards).length()).min(1.0).asin();
+        let radius = self.radius + direction.width;
+        if angle >= radius || d.z <= self.lowest {
+            return Value::vector(Vec3::ZERO);
+        }
+        let height = 0.5 + 0.5 * (d.z.asin() - towards.z.clamp(-1.0, 1.0).asin()) / radius;
+        let color = Vec3::from(self.bottom).lerp(Vec3::from(self.top), height);
+        let limb = 1.0 - LIMB * (1.0 - (1.0 - (angle / radius).powi(2)).max(0.0).sqrt());
+        Value::vector(color * (limb * (self.radius / radius).powi(2)))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

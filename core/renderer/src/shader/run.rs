@@ -83,6 +83,7 @@ fn execute(
         | Instruction::Mapping { .. }
         | Instruction::Normalize { .. }
         | Instruction::Panorama { .. }
+        | Instruction::SunDisk { .. }
         | Instruction::Combine { .. }
         | Instruction::Alpha { .. }
         | Instruction::Channel { .. }
@@ -113,6 +114,10 @@ fn vectors(instruction: &Instruction, r: &Operands<'_>) -> Value {
         }
         Instruction::Normalize { vector } => Value::vector(r.vector(vector).normalize_or_zero()),
         Instruction::Panorama { vector, ball } => panorama::place(r.value(vector), ball),
+        Instruction::SunDisk { vector, towards, radius, bottom, top, lowest } => {
+            let disk = panorama::SunDisk { towards, radius, bottom, top, lowest };
+            disk.seen(r.value(vector))
+        }
         Instruction::Combine { x, y, z } => {
             let v = Vec3::new(r.number(x), r.number(y), r.number(z));
             Value { v: v.extend(1.0), width: r.width(x).max(r.width(y)).max(r.width(z)) }
