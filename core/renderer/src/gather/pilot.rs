@@ -107,13 +107,17 @@ impl Seen {
         };
         let widest = 2.0 * spread(0).max(spread(1)).max(spread(2));
         let per_cell = CELLS / widest.max(1e-4);
-        let cell = |p: &Vec3| (*p * per_cell).floor().as_ivec3();
-        Self { cells: points.iter().map(cell).collect(), per_cell }
+        Self { cells: points.iter().map(|&p| cell(p, per_cell)).collect(), per_cell }
     }
 
     fn holds(&self, p: Vec3) -> bool {
-        self.cells.contains(&(p * self.per_cell).floor().as_ivec3())
+        self.cells.contains(&cell(p, self.per_cell))
     }
+}
+
+/// Surfaces are rarely an odd part of a cell from the scene's middle, where rounding would tell cells apart.
+fn cell(p: Vec3, per_cell: f32) -> IVec3 {
+    (p * per_cell + 0.381_966).floor().as_ivec3()
 }
 
 /// Of photons that are tried: the share of those that land where the picture looks, and the flux they bring there (mean

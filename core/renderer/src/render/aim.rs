@@ -10,7 +10,7 @@ use crate::settings::{RenderSettings, Switch};
 use crate::stats::AimStats;
 
 /// Where at least this share of a light's photons lands where the picture looks, they are left as they are.
-const ENOUGH: f64 = 0.5;
+const ENOUGH: f64 = 0.3;
 
 /// A light is chosen by the flux it brings to what the picture looks at, and by so much of all its flux: light also comes
 /// from around the corner.
