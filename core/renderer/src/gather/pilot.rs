@@ -23,7 +23,7 @@ const MAX_DEPTH: u32 = 8;
 #[must_use]
 pub fn finds(lit: &LitScene<'_>, seed: u32) -> Vec<Find> {
     const EDGE: u32 = 64;
-    const GATHER_RAYS: u32 = 4;
+    const GATHER_RAYS: u32 = 8;
     let camera = &lit.accel.scene().camera;
     let frame = DVec2::from(camera.resolution.map(f64::from));
     let of_pixel = |i: u32| {

@@ -10,7 +10,14 @@
 pub(super) const NUMBERS: usize = 4;
 
 /// Share of the photons that is not aimed.
-const UNAIMED: f64 = 0.25;
+const UNAIMED: f64 = 0.1;
+
+/// Share of the photons that goes where things were found as often as they were found. That is best for light that is read
+/// where it lands. Light from around the corner arrives rarely, and then all at once: there the square root is best.
+const DIRECT: f64 = 0.5;
+
+/// Finds that a leaf is taken to hold beside those it does.
+const UNSEEN: f64 = 0.5;
 
 /// Finds that a box must hold to be cut.
 const LEAST_FINDS: usize = 48;
@@ -69,12 +76,20 @@ impl Aim {
     /// From what was found for one light.
     pub(super) fn new(finds: &mut [([f32; NUMBERS], f32)]) -> Self {
         let total: f64 = finds.iter().map(|find| f64::from(find.1)).sum();
-        let mut nodes = Vec::new();
-        if total > 0.0 && total.is_finite() {
-            Builder { nodes: &mut nodes, total }.add(finds, [[0.0, 1.0]; NUMBERS], 0);
-        } else {
-            nodes.push(Node::Leaf { density: 1.0 });
+        if !(total > 0.0 && total.is_finite()) {
+            return Self { nodes: vec![Node::Leaf { density: 1.0 }] };
         }
+        let mut builder = Builder { nodes: Vec::new(), leaves: Vec::new(), total };
+        builder.add(finds, [[0.0, 1.0]; NUMBERS], 0);
+        let Builder { mut nodes, mut leaves, .. } = builder;
+        let unseen = UNSEEN / finds.len() as f64;
+        let rare = |leaf: &Leaf| ((leaf.found + unseen) * leaf.volume).sqrt();
+        let all_rare: f64 = leaves.iter().map(rare).sum();
+        let aimed = |leaf: &Leaf| DIRECT * leaf.found + (1.0 - DIRECT) * rare(leaf) / all_rare;
+        for leaf in &mut leaves {
+            leaf.probability = (1.0 - UNAIMED) * aimed(leaf) + UNAIMED * leaf.volume;
+        }
+        settle(&mut nodes, 0, &mut leaves.iter());
         Self { nodes }
     }
 
@@ -112,9 +127,39 @@ impl Aim {
     }
 }
 
-struct Builder<'a> {
-    nodes: &'a mut Vec<Node>,
-    /// Of all weights.
+/// Sets the densities of the leaves and, from them, where the numbers are divided at the cuts, from a node down; gives the
+/// node's probability. `leaves` come in the order of the nodes.
+fn settle(nodes: &mut [Node], node: usize, leaves: &mut std::slice::Iter<'_, Leaf>) -> f64 {
+    match nodes[node] {
+        Node::Leaf { .. } => {
+            let Some(leaf) = leaves.next() else { return 0.0 };
+            nodes[node] = Node::Leaf { density: (leaf.probability / leaf.volume) as f32 };
+            leaf.probability
+        }
+        Node::Cut { axis, at, upper_child, .. } => {
+            let below = settle(nodes, node + 1, leaves);
+            let above = settle(nodes, upper_child as usize, leaves);
+            let lower = (below / (below + above)) as f32;
+            nodes[node] = Node::Cut { axis, at, lower, upper_child };
+            below + above
+        }
+    }
+}
+
+/// A box that is not cut.
+struct Leaf {
+    /// Share of the weight of all finds.
+    found: f64,
+    volume: f64,
+    /// How often it is to be drawn.
+    probability: f64,
+}
+
+struct Builder {
+    nodes: Vec<Node>,
+    /// In the order of the nodes.
+    leaves: Vec<Leaf>,
+    /// Weight of all finds.
     total: f64,
 }
 
@@ -125,29 +170,27 @@ struct Cut {
     gain: f64,
 }
 
-impl Builder<'_> {
-    /// Adds the node of a box and all below it; gives its probability.
-    fn add(&mut self, finds: &mut [([f32; NUMBERS], f32)], bounds: [[f32; 2]; NUMBERS], depth: u32) -> f64 {
-        let volume: f64 = bounds.iter().map(|[low, high]| f64::from(high - low)).product();
+impl Builder {
+    /// Adds the node of a box and all below it.
+    fn add(&mut self, finds: &mut [([f32; NUMBERS], f32)], bounds: [[f32; 2]; NUMBERS], depth: u32) {
+        self.nodes.push(Node::Leaf { density: 0.0 });
+        let place = self.nodes.len() - 1;
         let cut = best_cut(finds, &bounds).filter(|_| finds.len() >= LEAST_FINDS && depth < DEEPEST);
         let Some(Cut { axis, at, .. }) = cut else {
-            let found: f64 = finds.iter().map(|find| f64::from(find.1)).sum();
-            let probability = (1.0 - UNAIMED) * found / self.total + UNAIMED * volume;
-            self.nodes.push(Node::Leaf { density: (probability / volume) as f32 });
-            return probability;
+            let found = finds.iter().map(|find| f64::from(find.1)).sum::<f64>() / self.total;
+            let volume = bounds.iter().map(|[low, high]| f64::from(high - low)).product();
+            self.leaves.push(Leaf { found, volume, probability: 0.0 });
+            return;
         };
-        let place = self.nodes.len();
-        self.nodes.push(Node::Leaf { density: 0.0 });
         finds.sort_unstable_by(|a, b| a.0[axis].total_cmp(&b.0[axis]));
         let (below, above) = finds.split_at_mut(finds.partition_point(|find| find.0[axis] < at));
         let mut part = bounds;
         part[axis] = [bounds[axis][0], at];
-        let lower = self.add(below, part, depth + 1);
+        self.add(below, part, depth + 1);
         let upper_child = self.nodes.len() as u32;
         part[axis] = [at, bounds[axis][1]];
-        let upper = self.add(above, part, depth + 1);
-        self.nodes[place] = Node::Cut { axis, at, lower: (lower / (lower + upper)) as f32, upper_child };
-        lower + upper
+        self.add(above, part, depth + 1);
+        self.nodes[place] = Node::Cut { axis, at, lower: 0.5, upper_child };
     }
 }
 
@@ -219,12 +262,12 @@ mod tests {
     }
 
     #[test]
-    fn three_quarters_go_where_things_were_found() {
+    fn most_go_where_things_were_found() {
         let aim = Aim::new(&mut window());
         let count = 20_000;
         let hits = points(count).filter(|&u| in_window(aim.warp(u).0)).count();
         let share = hits as f64 / count as f64;
-        assert!(share > 0.5 && share < 0.76, "{share}");
+        assert!(share > 0.4 && share < 0.9, "{share}");
     }
 
     /// Whatever is integrated over the numbers, the mean of value over density is its integral.
