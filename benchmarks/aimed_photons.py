@@ -42,12 +42,14 @@ def main() -> None:
     for aim in ("off", "auto"):
         for seed in range(options.seeds):
             photons = {"photon_count": options.photons, "aim": aim}
-            picture, stats = _render(
-                scene, {**_SETTINGS, "photon_pass": photons, "render": {"seed": seed}}
-            )
+            picture, stats = _render(scene, {**_SETTINGS, "photon_pass": photons, "render": {"seed": seed}})
             error = np.sqrt(((picture - reference) ** 2).mean()) / reference.mean()
             aimed = stats["aim"]
-            share = "" if aimed is None else f", {aimed['seen_before']:.3%} of photons became {aimed['seen_after']:.1%}"
+            share = (
+                ""
+                if aimed is None
+                else f", {aimed['seen_before']:.3%} of photons became {aimed['seen_after']:.1%}"
+            )
             print(
                 f"aim {aim}, seed {seed}: error {error:.1%}, mean {picture.mean() / reference.mean():.3f}, "
                 f"photon pass {stats['seconds']['photon_pass']:.2f} s{share}"

@@ -51,7 +51,9 @@ def world_radiance(context: ExportContext, b_world: Any) -> tuple[Color, dict[st
         return (red, green, blue), None
     total = compiler.register(0.0)
     for part in parts:
-        total = compiler.vector_math("ADD", total, Register(part.register) if isinstance(part, Varying) else part)
+        total = compiler.vector_math(
+            "ADD", total, Register(part.register) if isinstance(part, Varying) else part
+        )
     if len(compiler.instructions) > MOST_INSTRUCTIONS:
         compiler.report("its nodes are too many; what varies is replaced by a typical value")
         return (red, green, blue), None

@@ -56,7 +56,9 @@ def single_scattering(elevation: float, air: Air) -> Array:
         density = scales * _densities(np.linalg.norm(place, axis=-1) - _EARTH)
         depth += step[..., None] * density
         through = np.exp(-(depth + scales * _depth_to_sun(place, sun)) @ _RAYLEIGH_MIE_OZONE)
-        scattered = phases[..., :1] * density[..., :1] * _RAYLEIGH + phases[..., 1:] * density[..., 1:2] * _MIE
+        scattered = (
+            phases[..., :1] * density[..., :1] * _RAYLEIGH + phases[..., 1:] * density[..., 1:2] * _MIE
+        )
         lit = ~_in_shadow(place, sun)
         spectrum += through * scattered * (_SUNLIGHT * (lit * step)[..., None])
     rgb = rgb_from_xyz(spectrum @ _XYZ * _STEP_NM)

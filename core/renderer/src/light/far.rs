@@ -1,14 +1,52 @@
-//! The lights whose photons come from far away, suns and the world, and how they are aimed.
+//! Lights that are infinitely far away: the world as surfaces and rays see it, and how the photons of suns and the world are
+//! aimed.
 
 use glam::Vec3;
 
-use super::Lights;
+use super::{DirectSample, Lights, Receiver};
 use super::aim::{Aim, Find};
 use super::select::Cdf;
 use super::shape::Shape;
 use crate::color::Rgb;
 
 impl Lights {
+    /// What a ray that leaves the scene sees of the world, suns aside, and the pdf per solid angle with which
+    /// [`Lights::sample_direct`] from `from` finds this direction: 0 where it never does.
+    #[must_use]
+    pub fn world_seen(&self, from: impl Into<Receiver>, wi: Vec3, ray_kind_bit: u32) -> (Rgb, f32) {
+        let sampled = self.world.sampled().filter(|sampled| sampled.sampled() & ray_kind_bit != 0);
+        let pdf = sampled.map_or(0.0, |sampled| sampled.pdf(wi) * self.world_share(&from.into()));
+        (self.world.seen(wi, ray_kind_bit), pdf)
+    }
+
+    /// Probability with which the world is sampled and not another light: its share of the irradiance, about.
+    pub(super) fn world_share(&self, receiver: &Receiver) -> f32 {
+        const BOUNDS: [f32; 2] = [0.1, 0.9];
+        let Some(environment) = self.world.sampled() else { return 0.0 };
+        if self.emitters.is_empty() {
+            return 1.0;
+        }
+        // Half of what comes from all sides is above the surface, and that at a mean cosine of a half.
+        let of_world = 0.25 * environment.fluence().mean();
+        let share = of_world
+            / (of_world + self.tree.irradiance(receiver, |index| self.irradiance_estimate(receiver, index)));
+        if share.is_finite() { share.clamp(BOUNDS[0], BOUNDS[1]) } else { 0.5 }
+    }
+
+    pub(super) fn sample_world(&self, probability: f32, u: [f32; 2]) -> Option<DirectSample> {
+        let environment = self.world.sampled()?;
+        let sample = environment.sample(u);
+        Some(DirectSample {
+            wi: sample.wi,
+            distance: sample.distance,
+            radiance_over_pdf: sample.radiance_over_pdf / probability,
+            pdf_solid_angle: sample.pdf * probability,
+            is_delta: false,
+            casts_shadow: true,
+            visibility: environment.sampled(),
+        })
+    }
+
     /// Numbers of the lights that are infinitely far away and give light, the world among them.
     #[must_use]
     pub fn distant(&self) -> Vec<usize> {
