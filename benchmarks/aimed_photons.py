@@ -1,7 +1,7 @@
 """What aiming photons is worth: a room lit by sun and sky through a window, standing on a wide plane.
 
-`python -m benchmarks.aimed_photons` prints, with and without aiming and for the same number of photons, the share of photons
-that land first where the picture looks and the error of the indirect light against a picture of many more.
+`python -m benchmarks.aimed_photons` prints, with and without aiming and for the same number of photons, the share of
+photons that land first where the picture looks and the error of the indirect light against a picture of many more.
 """
 
 import argparse

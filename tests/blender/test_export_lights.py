@@ -143,7 +143,8 @@ def test_light_linking_is_reported_once(scene, export, problems):
     build.add_camera()
     b_lamp = build.add_light("POINT")
     b_object = b_lamp if hasattr(b_lamp, "light_linking") else bpy.data.objects["Lamp"]
-    assert len(export().lamps) == 1 and not any("light linking" in text for text in problems())
+    assert len(export().lamps) == 1
+    assert not any("light linking" in text for text in problems())
     b_object.light_linking.receiver_collection = bpy.data.collections.new("Few")
     assert len(export().lamps) == 1
     assert len([text for text in problems() if "light linking" in text]) == 1
@@ -219,7 +220,8 @@ def test_a_constant_world_has_no_program(scene, export):
     b_background = build.node(b_tree, "ShaderNodeBackground", Color=(0.5, 0.25, 1.0), Strength=3.0)
     build.connect(b_tree, b_background, b_output, "Surface")
     recording = export()
-    assert recording.world["program"] is None and not recording.textures
+    assert recording.world["program"] is None
+    assert not recording.textures
 
 
 def test_missing_environment_picture_is_named(scene, export, problems):
@@ -231,7 +233,8 @@ def test_missing_environment_picture_is_named(scene, export, problems):
     b_image.source, b_image.filepath = "FILE", "//nowhere.hdr"
     environment(scene, b_image)
     world = export().world
-    assert world["program"] is None and world["radiance"] == [1.0, 0.0, 1.0]
+    assert world["program"] is None
+    assert world["radiance"] == [1.0, 0.0, 1.0]
     assert any(scene.world.name in text and '"Lost" cannot be read' in text for text in problems())
 
 

@@ -18,6 +18,13 @@ Picture = npt.NDArray[np.float64]
 
 def render(scene: bpy.types.Scene, passes: Iterable[str] = ("Combined",)) -> dict[str, Picture]:
     """Renders the scene with its own engine and settings; pictures by the name of the pass."""
+    channels = render_channels(scene)
+    layer = scene.view_layers[0].name
+    return {name: rgb(channels, f"{layer}.{name}") for name in passes}
+
+
+def render_channels(scene: bpy.types.Scene) -> dict[str, npt.NDArray[Any]]:
+    """Renders the scene with its own engine and settings; every channel of the file by name, (height, width)."""
     output = scene.render.image_settings
     if hasattr(output, "media_type"):  # Blender 5.0 and later
         output.media_type = "MULTI_LAYER_IMAGE"
@@ -27,9 +34,7 @@ def render(scene: bpy.types.Scene, passes: Iterable[str] = ("Combined",)) -> dic
         path = Path(folder) / "picture.exr"
         scene.render.filepath = str(path)
         bpy.ops.render.render(write_still=True)
-        channels = read_channels(path)
-    layer = scene.view_layers[0].name
-    return {name: rgb(channels, f"{layer}.{name}") for name in passes}
+        return read_channels(path)
 
 
 def use_rgp(scene: bpy.types.Scene, settings: Mapping[str, Any]) -> None:

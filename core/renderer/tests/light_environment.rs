@@ -24,7 +24,8 @@ fn panorama(lamps: Vec<Lamp>, interpolation: Interpolation, texel: impl Fn(usize
         .map(|i| texel(i % COLUMNS, i / COLUMNS))
         .map(|radiance| [radiance, 0.5 * radiance, 0.25 * radiance, 1.0])
         .collect();
-    let texture = Texture::new([COLUMNS, ROWS], Pixels::Floats(texels), Encoding::Linear).unwrap();
+    let texture = Texture::new([COLUMNS, ROWS], Pixels::Floats(texels), Encoding::Linear)
+        .expect("as many texels as it says");
     scene.textures = vec![texture].into();
     let instructions = vec![
         Instruction::Geometry { quantity: Quantity::Position, aside: Aside::Here },
@@ -37,7 +38,7 @@ fn panorama(lamps: Vec<Lamp>, interpolation: Interpolation, texel: impl Fn(usize
             unassociate: false,
         },
     ];
-    let program = Program::new(instructions, 1).unwrap();
+    let program = Program::new(instructions, 1).expect("operands before their use");
     scene.world.program = Some(WorldProgram { program, radiance: 2 });
     scene
 }

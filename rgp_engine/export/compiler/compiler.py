@@ -1,4 +1,5 @@
-"""Walks a material's or world's nodes backwards from what is asked for, and writes down what has to be computed at every hit.
+"""Walks a material's or world's nodes backwards from what is asked for, and writes down what has to be computed at
+every hit.
 
 Whatever is constant stays a constant: only nodes behind which something differs from point to point become
 instructions.

@@ -75,7 +75,7 @@ def towards(elevation: float) -> Array:
 
 
 def length_to(radius: float, height: Array | float, sine: Array | float) -> Array:
-    """Way to a sphere about the earth's middle from inside of it, at a distance `height` from the middle along a ray that
-    rises with this sine; in the unit of both."""
+    """Way to a sphere about the earth's middle from inside of it, at a distance `height` from the middle, along a ray
+    that rises with this sine; in the unit of both."""
     along = height * sine
     return np.asarray(-along + np.sqrt(along * along - height * height + radius * radius))

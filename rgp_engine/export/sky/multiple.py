@@ -1,5 +1,5 @@
-"""Light scattered often by the atmosphere: four wavelengths, and a fit of what is scattered more than once (Garcia Linan,
-"Spectral Sky", 2024), as Blender 5 has it."""
+"""Light scattered often by the atmosphere: four wavelengths, and a fit of what is scattered more than once (Garcia
+Linan, "Spectral Sky", 2024), as Blender 5 has it."""
 
 import numpy as np
 
@@ -129,4 +129,5 @@ def _scattered_often(table: Array, cos: Array, height: Array, from_middle: Array
     to_place = _look_up(table, up, zero) / _look_up(table, up, height)
     shine = (planet * _GROUND_ALBEDO / (4.0 * np.pi * np.pi) * cos)[..., None]
     ground = shine * _look_up(table, cos, zero) * to_place
-    return ground + _MULTIPLE / (1.0 + 5.0 * np.exp(-17.92 * cos))[..., None]
+    often: Array = ground + _MULTIPLE / (1.0 + 5.0 * np.exp(-17.92 * cos))[..., None]
+    return often

@@ -29,7 +29,7 @@ pub fn finds(lit: &LitScene<'_>, seed: u32) -> Vec<Find> {
     let of_pixel = |i: u32| {
         let mut rng = Rng::new(hash(hash(u64::from(seed), 0x61_69_6d), u64::from(i)));
         let at = DVec2::new(f64::from(i % EDGE), f64::from(i / EDGE)) + 0.5;
-        let (ray, _) = camera_ray(camera, lit, at / f64::from(EDGE) * frame);
+        let ray = camera_ray(camera, lit, at / f64::from(EDGE) * frame, None).ray;
         let mut finds = Vec::new();
         if let Some(surface) = first_scatterer(lit, ray, MAX_DEPTH, &mut rng) {
             for _ in 0..GATHER_RAYS {

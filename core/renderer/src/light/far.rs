@@ -3,10 +3,10 @@
 
 use glam::Vec3;
 
-use super::{DirectSample, Lights, Receiver};
 use super::aim::{Aim, Find};
 use super::select::Cdf;
 use super::shape::Shape;
+use super::{DirectSample, Lights, Receiver};
 use crate::color::Rgb;
 
 impl Lights {

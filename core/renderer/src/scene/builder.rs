@@ -11,8 +11,8 @@ use super::record::{
     visibility,
 };
 use super::{
-    Camera, Lamp, Material, MaterialProgram, Mesh, Object, Problem, Projection, Scene, SceneSpace, World,
-    WorldProgram,
+    Camera, Lamp, Lens, Material, MaterialProgram, Mesh, Object, Problem, Projection, Scene, SceneSpace,
+    World, WorldProgram,
 };
 use crate::color::Rgb;
 use crate::error::RenderError;
@@ -109,7 +109,7 @@ impl SceneBuilder {
             mesh,
             world_from_object: transform,
             materials,
-            visibility: visible_to & visibility::ALL,
+            visibility: visible_to & (visibility::ALL | visibility::HOLDOUT),
             info: ObjectInfo::default(),
         });
         Ok(self.objects.len() - 1)
@@ -330,13 +330,19 @@ fn place_camera(record: &CameraRecord, space: &SceneSpace) -> Result<Camera, Ren
     };
     #[expect(clippy::cast_possible_truncation, reason = "clip distances need no more than f32")]
     let clip = record.clip.map(|d| (d * space.scale) as f32);
+    let lens = match &record.lens {
+        Some(lens) => Lens::new(lens, space.scale).map_err(fault)?,
+        None => None,
+    };
     Ok(Camera {
+        name: record.name.clone(),
         projection: record.projection,
         scene_from_camera: DAffine3::from_cols(x, y, z, origin),
         window: record.window.map(|v| v * length),
         resolution: record.resolution,
         region: record.region,
         clip,
+        lens,
     })
 }
 
