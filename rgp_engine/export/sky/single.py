@@ -195,12 +195,13 @@ def single_scattering(elevation: float, air: Air) -> Array:
     below, looking = seen[: len(seen) // 2], seen[len(seen) // 2 :]
     sun = towards(elevation)
     start = _EARTH + min(max(air.altitude, 1.0), 59999.0)
-    step = length_to(_TOP, start, looking[..., 2]) / _STEPS
+    step: Array = length_to(_TOP, start, looking[..., 2]) / _STEPS
     spectrum = np.zeros((*looking.shape[:2], len(_RAYLEIGH)))
     depth = np.zeros((*looking.shape[:2], 3))
     phases = _phases(looking @ sun)
     for i in range(_STEPS):
-        place = np.array([0.0, 0.0, start]) + looking * ((i + 0.5) * step)[..., None]
+        way: Array = looking * ((i + 0.5) * step)[..., None]
+        place = way + np.array([0.0, 0.0, start])
         density = scales * _densities(np.linalg.norm(place, axis=-1) - _EARTH)
         depth += step[..., None] * density
         through = np.exp(-(depth + scales * _depth_to_sun(place, sun)) @ _RAYLEIGH_MIE_OZONE)
