@@ -15,6 +15,7 @@ mod direct;
 mod floor;
 mod lambert;
 mod path;
+mod pilot;
 mod pyramid_lookup;
 mod readable;
 mod stop;
@@ -48,6 +49,7 @@ use convergence::Convergence;
 use deferred::{OpenTile, Traces};
 use direct::Shares;
 pub use floor::{TraceFloor, trace_floor};
+pub use pilot::{Landings, Seen, finds, landings};
 pub use pyramid_lookup::PyramidLookup;
 pub use stop::Stop;
 
