@@ -57,6 +57,12 @@ def closures(folder: Folder, entry: Input) -> tuple[list[WeightedClosure], list[
     return records, outputs
 
 
+def emissions(folder: Folder, entry: Input) -> list[Value | Varying]:
+    """What each emission that a shader input stands for gives; all else gives nothing."""
+    parts = _parts(folder, entry, 1.0)
+    return [folder.product(share, part["radiance"]) for share, part in parts if part["kind"] == "emission"]
+
+
 def _parts(folder: Folder, entry: Input, weight: float | Varying) -> list[tuple[Value | Varying, Closure]]:
     source = origin(entry)
     if isinstance(source, Input) or source.b_node.mute:

@@ -17,6 +17,7 @@ def export_light(context: ExportContext, b_instance: Any) -> None:
     if getattr(getattr(b_light, "cycles", None), "is_portal", False):
         context.log.add(b_object.name, "light portals are not needed; left out")
         return
+    _report_linking(context, b_object)
     power = lamp_power(context, b_light, b_instance.matrix_world)
     if not any(power):
         return
@@ -31,6 +32,13 @@ def export_light(context: ExportContext, b_instance: Any) -> None:
             "casts_shadow": b_light.use_shadow,
         }
     )
+
+
+def _report_linking(context: ExportContext, b_object: Any) -> None:
+    """Light and shadow linking, which would change the picture."""
+    b_linking = b_object.light_linking
+    if b_linking.receiver_collection is not None or b_linking.blocker_collection is not None:
+        context.log.add(b_object.name, "light linking is not supported yet; the lamp lights everything")
 
 
 def lamp_power(context: ExportContext, b_light: Any, b_matrix: Any) -> Color:

@@ -3,42 +3,58 @@
 from typing import Any
 
 from .arithmetic import BLACK, Color
-from .closures import closures
+from .closures import emissions
+from .compiler import MOST_INSTRUCTIONS, Compiler, Register
 from .context import ExportContext
-from .fold import Folder
+from .fold import Varying, as_color
 from .nodes import Input, Output, node_tree, origin, output_node
 from .visibility import world_bits
 
 
+class WorldCompiler(Compiler):
+    """Compiles a world: what is asked of the surface is asked of the direction."""
+
+    of_world = True
+
+
 def world_record(context: ExportContext) -> dict[str, Any]:
-    """Constant light from outside."""
+    """Light from outside."""
     b_scene = context.b_depsgraph.scene_eval
     b_world = b_scene.world
-    radiance = BLACK if b_world is None else world_radiance(context, b_world)
-    context.emits |= any(radiance)
+    radiance, program = (BLACK, None) if b_world is None else world_radiance(context, b_world)
+    context.emits |= any(radiance) or program is not None
     return {
+        "name": "World" if b_world is None else b_world.name,
         "radiance": list(radiance),
+        "program": program,
         "visibility": world_bits(b_world),
         "film_transparent": b_scene.render.film_transparent,
     }
 
 
-def world_radiance(context: ExportContext, b_world: Any) -> Color:
-    """Radiance of the background (W/(m² sr)): color times strength, mixes included."""
+def world_radiance(context: ExportContext, b_world: Any) -> tuple[Color, dict[str, Any] | None]:
+    """Radiance of the background (W/(m² sr)): color times strength, mixes included. Where it differs from direction to
+    direction a typical value, and the core's WorldProgramRecord."""
     b_tree = node_tree(b_world)
     if b_tree is None:
-        return tuple(b_world.color)
+        return tuple(b_world.color), None
     b_output = output_node(b_tree)
     if b_output is None:
-        return BLACK
-    folder = Folder(b_world.name, context.log)
+        return BLACK, None
+    compiler = WorldCompiler(context, b_world.name)
     if isinstance(origin(Input(b_output.inputs["Volume"], ())), Output):
-        folder.report("volumes are not supported yet; left out")
-    red = green = blue = 0.0
-    for part in closures(folder, Input(b_output.inputs["Surface"], ()))[0]:
-        if part["closure"]["kind"] == "emission":
-            weight, radiance = part["weight"], part["closure"]["radiance"]
-            red += weight[0] * radiance[0]
-            green += weight[1] * radiance[1]
-            blue += weight[2] * radiance[2]
-    return red, green, blue
+        compiler.report("volumes are not supported yet; left out")
+    parts = emissions(compiler, Input(b_output.inputs["Surface"], ()))
+    colors = [as_color(part.typical if isinstance(part, Varying) else part) for part in parts]
+    red, green, blue = (sum(color[channel] for color in colors) for channel in range(3))
+    if not any(isinstance(part, Varying) for part in parts):
+        return (red, green, blue), None
+    total = compiler.register(0.0)
+    for part in parts:
+        total = compiler.vector_math(
+            "ADD", total, Register(part.register) if isinstance(part, Varying) else part
+        )
+    if len(compiler.instructions) > MOST_INSTRUCTIONS:
+        compiler.report("its nodes are too many; what varies is replaced by a typical value")
+        return (red, green, blue), None
+    return (red, green, blue), {"instructions": compiler.instructions, "radiance": total.index}

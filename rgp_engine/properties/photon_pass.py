@@ -25,3 +25,15 @@ class RGPPhotonPassSettings(bpy.types.PropertyGroup):
         min=1,
         max=1000,
     )
+    aim: bpy.props.EnumProperty(
+        name="Aim",
+        description=(
+            "Photons of suns and the world go where the picture looks; Auto: where most would miss it"
+        ),
+        items=(
+            ("auto", "Auto", "Where most photons would land where nothing looks", 0),
+            ("on", "On", "In any case", 1),
+            ("off", "Off", "Photons are spread evenly over the whole scene", 2),
+        ),
+        default="auto",
+    )

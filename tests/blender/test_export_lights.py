@@ -139,6 +139,17 @@ def test_portals_give_no_light(scene, export, problems):
     assert "Portal: light portals are not needed; left out" in problems()
 
 
+def test_light_linking_is_reported_once(scene, export, problems):
+    build.add_camera()
+    b_lamp = build.add_light("POINT")
+    b_object = b_lamp if hasattr(b_lamp, "light_linking") else bpy.data.objects["Lamp"]
+    assert len(export().lamps) == 1
+    assert not any("light linking" in text for text in problems())
+    b_object.light_linking.receiver_collection = bpy.data.collections.new("Few")
+    assert len(export().lamps) == 1
+    assert len([text for text in problems() if "light linking" in text]) == 1
+
+
 def world_of(scene):
     b_world = bpy.data.worlds.new("World")
     scene.world = b_world
@@ -169,20 +180,92 @@ def test_mixed_backgrounds(scene, export):
     assert export().world["radiance"] == pytest.approx([2.0] * 3)
 
 
-def test_environment_picture_is_replaced_by_its_mean_over_the_sphere(scene, export, problems):
-    build.add_camera()
-    b_image = bpy.data.images.new("Sky", 8, 4, float_buffer=True)
-    rows = np.zeros((4, 8, 4), np.float32)
-    rows[2:] = 2.0
-    b_image.pixels.foreach_set(rows.ravel())
+def environment(scene, b_image):
+    """A world that shows an image."""
     b_tree, b_output = world_of(scene)
     b_texture = b_tree.nodes.new("ShaderNodeTexEnvironment")
     b_texture.image = b_image
     b_background = build.node(b_tree, "ShaderNodeBackground", Strength=1.0)
     build.connect(b_tree, b_texture, b_background, "Color")
     build.connect(b_tree, b_background, b_output, "Surface")
-    assert export().world["radiance"] == pytest.approx([1.0] * 3, rel=1e-5)
-    assert any("only its average is used here" in text for text in problems())
+    return b_texture
+
+
+def panorama(texel=2.0):
+    """Black below the horizon."""
+    b_image = bpy.data.images.new("Panorama", 8, 4, float_buffer=True)
+    rows = np.zeros((4, 8, 4), np.float32)
+    rows[2:] = texel
+    b_image.pixels.foreach_set(rows.ravel())
+    return b_image
+
+
+def test_environment_texture_becomes_a_program(scene, export, problems):
+    build.add_camera()
+    environment(scene, panorama())
+    recording = export()
+    assert recording.world["name"] == scene.world.name
+    assert recording.world["radiance"] == pytest.approx([1.0] * 3, rel=1e-5), "its mean over the sphere"
+    program = recording.world["program"]
+    operations = [step["op"] for step in program["instructions"]]
+    assert {"geometry", "panorama", "image"} <= set(operations)
+    assert program["radiance"] < len(operations)
+    assert recording.textures[0]["pixels"].shape == (4, 8, 4)
+    assert not problems()
+
+
+def test_a_constant_world_has_no_program(scene, export):
+    build.add_camera()
+    b_tree, b_output = world_of(scene)
+    b_background = build.node(b_tree, "ShaderNodeBackground", Color=(0.5, 0.25, 1.0), Strength=3.0)
+    build.connect(b_tree, b_background, b_output, "Surface")
+    recording = export()
+    assert recording.world["program"] is None
+    assert not recording.textures
+
+
+def test_missing_environment_picture_is_named(scene, export, problems):
+    build.add_camera()
+    environment(scene, None)
+    assert export().world["program"] is None
+    assert any("Environment Texture" in text and "it has no image" in text for text in problems())
+    b_image = bpy.data.images.new("Lost", 8, 4)
+    b_image.source, b_image.filepath = "FILE", "//nowhere.hdr"
+    environment(scene, b_image)
+    world = export().world
+    assert world["program"] is None
+    assert world["radiance"] == [1.0, 0.0, 1.0]
+    assert any(scene.world.name in text and '"Lost" cannot be read' in text for text in problems())
+
+
+def test_pixels_that_are_no_numbers_are_replaced(scene, export, problems):
+    build.add_camera()
+    b_image = panorama()
+    texels = np.ones((4, 8, 4), np.float32)
+    texels[1, 2, 0], texels[2, 3, 1], texels[3, 3, 2] = np.nan, np.inf, -np.inf
+    b_image.pixels.foreach_set(texels.ravel())
+    environment(scene, b_image)
+    pixels = export().textures[0]["pixels"]
+    assert np.isfinite(pixels).all()
+    assert pixels[1, 2, 0] == 0.0
+    assert pixels[2, 3, 1] == 65504.0
+    assert pixels[3, 3, 2] == 0.0
+    assert any(b_image.name in text and "3 pixels are not finite" in text for text in problems())
+
+
+def test_every_sky_is_a_picture_and_a_sun(scene, export):
+    build.add_camera()
+    b_tree, b_output = world_of(scene)
+    b_sky = b_tree.nodes.new("ShaderNodeTexSky")
+    b_background = build.node(b_tree, "ShaderNodeBackground", Strength=1.0)
+    build.connect(b_tree, b_sky, b_background, "Color")
+    build.connect(b_tree, b_background, b_output, "Surface")
+    for b_kind in b_sky.bl_rna.properties["sky_type"].enum_items:
+        b_sky.sky_type = b_kind.identifier
+        recording = export()
+        assert np.isfinite(recording.textures[0]["pixels"]).all()
+        has_sun = any(step["op"] == "sun_disk" for step in recording.world["program"]["instructions"])
+        assert has_sun == (b_kind.identifier not in ("PREETHAM", "HOSEK_WILKIE"))
 
 
 def test_no_world_is_black(scene, export):

@@ -10,7 +10,7 @@ use crate::bsdf::{Bsdf, BsdfSample, LobeSet, PreparedMaterial, ShadingFrame, Var
 use crate::color::Rgb;
 use crate::effects_plan::EffectsPlan;
 use crate::light::{Lights, Receiver};
-use crate::scene::{World, visibility};
+use crate::scene::visibility;
 use hit_point::HitPoint;
 
 /// Everything a pass asks of the scene.
@@ -21,8 +21,6 @@ pub struct LitScene<'a> {
     pub materials: Vec<PreparedMaterial>,
     /// Lamps, emissive meshes and the world.
     pub lights: Lights,
-    /// Light from outside, black where the plan leaves it out.
-    pub world: World,
     /// What is called for.
     pub plan: EffectsPlan,
 }

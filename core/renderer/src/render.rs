@@ -1,5 +1,6 @@
 //! The order of everything.
 
+mod aim;
 mod baselines;
 mod openness;
 
@@ -16,7 +17,7 @@ use crate::error::RenderError;
 use crate::estimator::{Estimator, PhotonSink};
 use crate::film::Film;
 use crate::gather::{self, Gatherer, PyramidLookup, Stop, TraceFloor};
-use crate::light::Lights;
+use crate::light::{Environment, Lights};
 use crate::lit_scene::LitScene;
 use crate::photon_pass::{self, PyramidDeposits};
 use crate::progress::{Progress, Stage};
@@ -25,7 +26,7 @@ use crate::pyramid::{
     SurfaceTriangle,
 };
 use crate::scene::Scene;
-use crate::settings::{EstimatorKind, RenderSettings, parse_bins};
+use crate::settings::{EstimatorKind, RenderSettings, Switch, parse_bins};
 use crate::shader::Texture;
 use crate::stats::{EstimatorStats, Stats, TextureCounts};
 
@@ -87,15 +88,20 @@ fn passes(
         images: scene.textures.len(),
         bytes: scene.textures.iter().map(Texture::bytes).sum(),
     };
-    let lit = light(scene, settings, library, progress)?;
+    let mut lit = light(scene, settings, library, progress)?;
     stats.seconds.accel = clock.elapsed().as_secs_f64();
     stats.effects = lit.plan.report();
     if lit.plan.direct {
         stats.effects[Effect::DirectLight as usize].bytes = lit.lights.bytes();
     }
+    stats.effects[Effect::EnvironmentLight as usize].bytes = lit.lights.world_bytes();
     stats.effects[Effect::EmissiveMeshes as usize].bytes = lit.lights.emitter_bytes();
 
-    let work = Work { lit: &lit, settings, film, progress };
+    let (rays, seed) = (settings.gather.rays, settings.render.seed);
+    let seen = if lit.plan.indirect() { gather::readings(&lit, rays, seed) } else { Vec::new() };
+    stats.aim = aim::aim(&mut lit, &seen, settings);
+    progress.check()?;
+    let work = Work { lit: &lit, seen: &seen, settings, film, progress };
     match settings.gather.estimator {
         EstimatorKind::Pyramid => work.pyramid(stats),
         EstimatorKind::Pyramid2006 => work.pyramid_2006(stats),
@@ -110,6 +116,8 @@ fn passes(
 /// The passes over a scene that is ready to be traced.
 struct Work<'a> {
     lit: &'a LitScene<'a>,
+    /// Points that the camera and its gather rays see.
+    seen: &'a [Reading],
     settings: &'a RenderSettings,
     film: &'a Film,
     progress: &'a Progress,
@@ -121,7 +129,7 @@ impl Work<'_> {
         let Work { lit, settings, progress, .. } = *self;
         progress.enter(Stage::Layout);
         let clock = Instant::now();
-        let layout = layout(lit, settings, progress)?;
+        let layout = layout(lit, self.seen, settings, progress)?;
         stats.pyramid.cell_size =
             f64::from(layout.grid.levels[layout.grid.finest()].cell_size) / lit.accel.scene().space.scale;
         stats.seconds.pyramid = clock.elapsed().as_secs_f64();
@@ -186,7 +194,7 @@ impl Work<'_> {
         let counts = photon_pass::run(self.lit, photon_pass, seed, sets, sink, self.progress)?;
         stats.photons.emitted = counts.emitted;
         stats.rays.photon = counts.segments;
-        stats.seconds.photon_pass = clock.elapsed().as_secs_f64();
+        stats.seconds.photon_pass = clock.elapsed().as_secs_f64() + stats.aim.map_or(0.0, |aim| aim.seconds);
         counts.costs.charge(&mut stats.effects, stats.seconds.photon_pass);
         Ok(())
     }
@@ -218,24 +226,35 @@ fn light<'a>(
     let mut materials: Vec<PreparedMaterial> =
         MaterialTable::build(&scene.materials).iter().cloned().collect();
     let mut world = scene.world.clone();
+    let environment = if settings.effects.environment_light == Switch::Off {
+        None
+    } else {
+        Environment::new(&world, &scene.textures)
+    };
+    if environment.is_none() && world.program.is_some() && settings.effects.environment_light != Switch::Off {
+        world.blacken();
+    }
     let plan = EffectsPlan::new(scene, &settings.effects, &mut materials, &mut world);
     let emission: Vec<_> = materials.iter().map(PreparedMaterial::emission).collect();
-    let lights = Lights::with_world(scene, &emission, &world);
+    let lights = Lights::with_world(scene, &emission, &world, environment);
     let proxies = lights.lamp_proxies();
     let accel = Accel::build(scene, &proxies, library, settings.render.threads as usize, progress)?;
-    Ok(LitScene { accel, materials, lights, world, plan })
+    Ok(LitScene { accel, materials, lights, plan })
 }
 
 /// The cells, over what the camera and its gather rays see.
-fn layout(lit: &LitScene<'_>, settings: &RenderSettings, progress: &Progress) -> Result<Layout, RenderError> {
+fn layout(
+    lit: &LitScene<'_>,
+    seen: &[Reading],
+    settings: &RenderSettings,
+    progress: &Progress,
+) -> Result<Layout, RenderError> {
     let scene = lit.accel.scene();
-    let (rays, seed) = (settings.gather.rays, settings.render.seed);
-    let readings = if lit.plan.indirect() { gather::readings(lit, rays, seed) } else { Vec::new() };
-    let seen = seen_bounds(&readings, scene.bounds);
+    let box_seen = seen_bounds(seen, scene.bounds);
     let bounds = scene.bounds.map(Vec3::as_dvec3);
     let world_origin = -scene.space.center * scene.space.scale;
-    let mut grid = Grid::new(seen, bounds, settings.pyramid.finest_resolution, world_origin);
-    grid.refine(&readings, settings.pyramid.adaptive_levels);
+    let mut grid = Grid::new(box_seen, bounds, settings.pyramid.finest_resolution, world_origin);
+    grid.refine(seen, settings.pyramid.adaptive_levels);
     let classes =
         if settings.pyramid.normal_classes == "54" { NormalClasses::FiftyFour } else { NormalClasses::Six };
     let mut triangles: Vec<(u32, u32)> = Vec::new();

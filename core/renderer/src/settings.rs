@@ -12,6 +12,8 @@ pub struct PhotonPassSettings {
     pub photon_count: u64,
     /// Surfaces a photon may visit.
     pub max_depth: u32,
+    /// Whether photons from suns and the world are aimed at what the picture looks at; Auto: where most would miss it.
+    pub aim: Switch,
 }
 
 /// Knobs of the pyramid.
@@ -178,7 +180,7 @@ pub struct RenderSettings {
 
 impl Default for PhotonPassSettings {
     fn default() -> Self {
-        Self { photon_count: 1_000_000, max_depth: 64 }
+        Self { photon_count: 1_000_000, max_depth: 64, aim: Switch::Auto }
     }
 }
 
@@ -293,6 +295,7 @@ const ESTIMATORS: &[&str] = &[
 pub const KNOBS: &[Knob] = &[
     knob("photon_pass", "photon_count", int(0, 1_000_000_000), "photons", "Photons emitted by all lights together; more make smoother indirect light"),
     knob("photon_pass", "max_depth", int(1, 1000), "surfaces", "Surfaces a photon may visit before it is dropped; low values darken the picture"),
+    knob("photon_pass", "aim", SWITCH, "", "Photons of suns and the world go where the picture looks; Auto: where most would miss it"),
     knob("pyramid", "finest_resolution", int(1, 1024), "cells", "Cells of the finest level along the longest side of what the camera and its gather rays see"),
     knob("pyramid", "adaptive_levels", int(0, 3), "levels", "Levels with cells finer than that, made where gather rays end nearby; 0 for equal cells everywhere"),
     knob("pyramid", "bins", Kind::Bins, "", "Direction bins of glossy cells, elevation x azimuth; diffuse cells have none"),

@@ -57,6 +57,21 @@ pub struct PhotonCounts {
     pub lost: u64,
 }
 
+/// How photons from suns and the world were aimed.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct AimStats {
+    /// Lights whose photons were aimed.
+    pub lights: usize,
+    /// Share of their photons that would have landed first where the camera and its gather rays look.
+    pub seen_before: f64,
+    /// The same of those that were aimed.
+    pub seen_after: f64,
+    /// Memory (bytes).
+    pub bytes: usize,
+    /// Wall seconds, counted to the photon pass too.
+    pub seconds: f64,
+}
+
 /// Images that materials look up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct TextureCounts {
@@ -159,6 +174,8 @@ pub struct Stats {
     pub rays: RayCounts,
     /// Photons.
     pub photons: PhotonCounts,
+    /// How photons were aimed; `None` where they were not.
+    pub aim: Option<AimStats>,
     /// Textures.
     pub textures: TextureCounts,
     /// Pyramid.

@@ -197,7 +197,7 @@ fn reasons_are_named() {
     let because = |effect| of(&picture, effect).because.as_str();
     assert_eq!(because(Effect::DirectLight), "lamp 'lamp'");
     assert_eq!(because(Effect::Caustics), "glass on 'object' (material 'material')");
-    assert_eq!(because(Effect::EnvironmentLight), "the world's color");
+    assert_eq!(because(Effect::EnvironmentLight), "color of world 'World'");
     let diffuse = finish_and_render(Room::default().builder(), &switched(Switch::Auto, &[]));
     assert_eq!(of(&diffuse, Effect::Caustics).because, "nothing in the scene asks for it");
 }

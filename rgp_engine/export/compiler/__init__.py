@@ -4,7 +4,7 @@
 becomes; `images.py` brings the pixels.
 """
 
-from .compiler import MOST_INSTRUCTIONS, Compiler
+from .compiler import MOST_INSTRUCTIONS, Compiler, Register
 from .displacement import displace
 
-__all__ = ["MOST_INSTRUCTIONS", "Compiler", "displace"]
+__all__ = ["MOST_INSTRUCTIONS", "Compiler", "Register", "displace"]

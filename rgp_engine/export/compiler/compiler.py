@@ -1,4 +1,5 @@
-"""Walks a material's nodes backwards from what is asked for, and writes down what has to be computed at every hit.
+"""Walks a material's or world's nodes backwards from what is asked for, and writes down what has to be computed at
+every hit.
 
 Whatever is constant stays a constant: only nodes behind which something differs from point to point become
 instructions.
@@ -32,7 +33,10 @@ Operand = Value | Register
 
 
 class Compiler(Folder):
-    """Folds what is constant and compiles the rest, for one material."""
+    """Folds what is constant and compiles the rest, for one material or world."""
+
+    of_world = False
+    """True for a world: positions are directions, and there is no mesh."""
 
     def __init__(self, context: "ExportContext", subject: str) -> None:
         super().__init__(subject, context.log)
@@ -220,6 +224,10 @@ class Compiler(Folder):
         """A layer of the mesh."""
         self.attributes.add(name)
         return self.emit("attribute", attribute=self.context.attribute_number(name), aside=self.aside)
+
+    def generated(self) -> Register:
+        """Where textures are looked up if nothing else is said."""
+        return self.quantity("position") if self.of_world else self.attribute("generated")
 
     def transformed(self, vector: Register, rows: Iterable[Iterable[float]]) -> Register:
         """A matrix (3 x 4) times a point."""

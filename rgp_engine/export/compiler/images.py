@@ -25,6 +25,7 @@ def texture_of(c: "Compiler", b_node: Any) -> int | None:
         pixels = image_pixels(b_image)
         index = None
         if pixels is not None:
+            _make_finite(c, b_image, pixels)
             index = c.context.builder.add_texture(b_image.name, pixels, _encoding(c, b_image))
         textures[key] = index
     return textures[key]
@@ -37,6 +38,21 @@ def _encoding(c: "Compiler", b_image: Any) -> str:
     if space != "sRGB":
         c.context.log.add(b_image.name, f"the color space {space} is not supported yet; sRGB is used instead")
     return "srgb"
+
+
+# The largest number of a half, which is what a pixel too bright for one becomes.
+_BRIGHTEST_HALF = 65504.0
+
+
+def _make_finite(c: "Compiler", b_image: Any, pixels: npt.NDArray[Any]) -> None:
+    """Replaces what is no finite number, in place, and says so."""
+    bad = int(np.count_nonzero(~np.isfinite(pixels).all(axis=2)))
+    if bad:
+        np.nan_to_num(pixels, copy=False, nan=0.0, posinf=_BRIGHTEST_HALF, neginf=0.0)
+        c.context.log.add(
+            b_image.name,
+            f"{bad} pixels are not finite numbers; 0 is used, or {_BRIGHTEST_HALF:.0f} for infinity",
+        )
 
 
 def image_pixels(b_image: Any) -> npt.NDArray[Any] | None:

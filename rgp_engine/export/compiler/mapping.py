@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 def texture_vector(c: "Compiler", source: Output) -> "Register":
     """Where a pattern is looked up; unlinked it follows the mesh's generated coordinates."""
-    vector = c.input(source, "Vector") if c.linked(source, "Vector") else c.attribute("generated")
+    vector = c.input(source, "Vector") if c.linked(source, "Vector") else c.generated()
     return own_mapping(c, source.b_node, vector)
 
 

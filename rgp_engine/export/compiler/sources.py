@@ -7,6 +7,7 @@ from ..coordinates import matrix_array
 from ..nodes import Output
 from .images import texture_of, unassociates
 from .mapping import own_mapping
+from .sky import sky_texture
 
 if TYPE_CHECKING:
     from .compiler import Compiler, Operand, Register
@@ -19,14 +20,10 @@ def _image(c: "Compiler", source: Output) -> "Operand | None":
     texture = texture_of(c, b_node)
     if texture is None or b_node.projection not in ("FLAT", "BOX"):
         return None
-    if b_node.interpolation not in ("Closest", "Linear"):
-        c.report_node(
-            b_node, f"{b_node.interpolation.lower()} interpolation is not supported yet; linear is used"
-        )
     fields = {
         "texture": texture,
         "extension": _EXTENSIONS[b_node.extension],
-        "interpolation": "closest" if b_node.interpolation == "Closest" else "linear",
+        "interpolation": _interpolation(c, b_node),
         "unassociate": unassociates(b_node),
     }
     vector = own_mapping(c, b_node, c.input(source, "Vector") if c.linked(source, "Vector") else _uv(c))
@@ -37,6 +34,26 @@ def _image(c: "Compiler", source: Output) -> "Operand | None":
     else:
         color = c.emit("image", vector=vector, **fields)
     return c.emit("alpha", of=color) if source.b_socket.identifier == "Alpha" else color
+
+
+def _environment(c: "Compiler", source: Output) -> "Operand | None":
+    b_node = source.b_node
+    texture = texture_of(c, b_node)
+    if texture is None:
+        return None
+    direction = c.input(source, "Vector") if c.linked(source, "Vector") else c.quantity("position")
+    direction = own_mapping(c, b_node, direction)
+    place = c.emit("panorama", vector=direction, ball=b_node.projection == "MIRROR_BALL")
+    fields = {"texture": texture, "extension": "repeat", "interpolation": _interpolation(c, b_node)}
+    return c.emit("image", vector=place, unassociate=False, **fields)
+
+
+def _interpolation(c: "Compiler", b_node: Any) -> str:
+    if b_node.interpolation not in ("Closest", "Linear"):
+        c.report_node(
+            b_node, f"{b_node.interpolation.lower()} interpolation is not supported yet; linear is used"
+        )
+    return "closest" if b_node.interpolation == "Closest" else "linear"
 
 
 def _uv(c: "Compiler") -> "Register":
@@ -55,7 +72,7 @@ def _texture_coordinate(c: "Compiler", source: Output) -> "Operand | None":
     if source.b_node.from_instancer and name in ("Generated", "UV"):
         return None
     if name == "Generated":
-        return c.attribute("generated")
+        return c.generated()
     if name == "UV":
         return _uv(c)
     if name == "Normal":
@@ -77,6 +94,8 @@ def _camera_position(c: "Compiler") -> "Register":
     b_camera = c.context.b_depsgraph.scene_eval.camera
     rows = _inverse_rows(b_camera.matrix_world.normalized())
     rows[2] = [-x for x in rows[2]]
+    if c.of_world:
+        rows = [[*row[:3], 0.0] for row in rows]
     return c.transformed(c.quantity("position"), rows)
 
 
@@ -212,6 +231,8 @@ def _known(emit: "Callable[[Compiler, Output], Operand | None]") -> "Callable[[C
 
 NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
     "TEX_IMAGE": _image,
+    "TEX_ENVIRONMENT": _environment,
+    "TEX_SKY": sky_texture,
     "UVMAP": _uv_map,
     "TEX_COORD": _texture_coordinate,
     "NEW_GEOMETRY": _geometry,
@@ -227,10 +248,11 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
 """Instructions of the nodes that look at the hit."""
 
 SOURCES: "dict[str, Callable[[Compiler, Output], bool]]" = {
-    **dict.fromkeys(("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP"), _always),
+    **dict.fromkeys(("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP", "TEX_SKY"), _always),
     "TEX_IMAGE": lambda c, source: (
         texture_of(c, source.b_node) is not None and source.b_node.projection in ("FLAT", "BOX")
     ),
+    "TEX_ENVIRONMENT": lambda c, source: texture_of(c, source.b_node) is not None,
     "UVMAP": _known(_uv_map),
     "TEX_COORD": _known(_texture_coordinate),
     "NEW_GEOMETRY": _known(_geometry),

@@ -148,7 +148,7 @@ pub struct EffectsPlan {
     pub planned: Vec<Planned>,
     /// Direct light is computed.
     pub direct: bool,
-    /// There are lamps or emissive meshes: lights that can be sampled.
+    /// There are lamps, emissive meshes or a world that is brighter on some sides: lights that can be sampled.
     pub light_samples: bool,
     /// Caustics that the eye sees are computed.
     pub caustics: bool,
@@ -173,7 +173,9 @@ impl EffectsPlan {
     ) -> Self {
         let used = used_materials(scene);
         let parts = leave_out_parts(scene, &used, settings, materials, world);
-        let light_samples = !scene.lamps.is_empty() || materials.iter().any(|m| !m.emission().is_black());
+        let light_samples = !scene.lamps.is_empty()
+            || world.program.is_some()
+            || materials.iter().any(|m| !m.emission().is_black());
         let mut planned = path_classes(scene, &used, settings, materials, world);
         planned.extend(parts);
         planned.push(depth_of_field(scene, settings));
@@ -273,7 +275,7 @@ fn leave_out_parts(
     let emissive = first(scene, used, materials, |m| (!m.emission().is_black()).then_some("emission"));
     let transparent =
         first(scene, used, materials, |m| (!m.transparency().is_black()).then_some("transparency"));
-    let color = (!world.radiance.is_black()).then(|| "the world's color".to_owned());
+    let color = world_reason(world);
     let parts = [
         (Effect::MirrorsAndGlass, sharp),
         (Effect::EnvironmentLight, color),
@@ -290,7 +292,7 @@ fn leave_out_parts(
             Effect::AlphaTransparency => {
                 materials.iter_mut().for_each(PreparedMaterial::leave_out_transparency);
             }
-            _ => world.radiance = crate::color::Rgb::BLACK,
+            _ => world.blacken(),
         }
     }
     parts
@@ -310,7 +312,7 @@ fn path_classes(
     let lamp = scene.lamps.first().map(|lamp| format!("lamp '{}'", lamp.name));
     let light = lamp
         .or_else(|| first(&|m| (!m.emission().is_black()).then_some("emission")))
-        .or_else(|| (!world.radiance.is_black()).then(|| "the world's color".to_owned()));
+        .or_else(|| world_reason(world));
     let lit = |because: Option<String>| because.filter(|_| light.is_some());
     let receiver = has(LobeSet::NON_DELTA, "surface");
     let because = [
@@ -323,6 +325,12 @@ fn path_classes(
         .map(|(effect, because)| Planned { effect, switch: effect.switch(settings), because })
         .into_iter()
         .collect()
+}
+
+/// What in the world gives light.
+fn world_reason(world: &World) -> Option<String> {
+    let what = if world.program.is_some() { "nodes" } else { "color" };
+    (!world.is_black()).then(|| format!("{what} of world '{}'", world.name))
 }
 
 /// Plans the camera's lens.

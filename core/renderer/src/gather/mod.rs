@@ -15,16 +15,16 @@ mod direct;
 mod floor;
 mod lambert;
 mod path;
-mod readings;
+mod pilot;
 mod pyramid_lookup;
 mod readable;
+mod readings;
 mod stop;
 mod vertex;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
-
 
 use crate::accel::Hit;
 use crate::bsdf::{LobeSet, PreparedMaterial, Varying};
@@ -47,8 +47,9 @@ use convergence::Convergence;
 use deferred::{OpenTile, Traces};
 use direct::Shares;
 pub use floor::{TraceFloor, trace_floor};
-pub use readings::readings;
+pub use pilot::{Landings, Seen, finds, landings};
 pub use pyramid_lookup::PyramidLookup;
+pub use readings::readings;
 pub use stop::Stop;
 
 /// What every gather ray needs to know.

@@ -105,7 +105,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 meter.back(owner);
             }
             let Some(hit) = hit else {
-                let world = (!lit.world.radiance.is_black()).then_some(Effect::EnvironmentLight);
+                let world = lit.lights.has_world().then_some(Effect::EnvironmentLight);
                 meter.enter_if(world.or(sampled.light));
                 met.light += met.through * self.escaped(from, ray.direction, sampled);
                 return met;
@@ -141,8 +141,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
 
     /// Light from outside the scene.
     fn escaped(&self, from: Receiver, direction: Vec3, sampled: Sampled) -> Rgb {
-        let world = &self.lit.world;
-        let mut light = if world.visibility & sampled.kind == 0 { Rgb::BLACK } else { world.radiance };
+        let (world, pdf) = self.lit.lights.world_seen(from, direction, sampled.kind);
+        let mut light = world * sampled.weight(pdf);
         self.lit.lights.suns(from, direction, sampled.kind, &mut |radiance, pdf| {
             light += radiance * sampled.weight(pdf);
         });

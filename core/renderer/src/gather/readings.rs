@@ -47,7 +47,7 @@ pub fn readings(lit: &LitScene<'_>, rays: u32, seed: u32) -> Vec<Reading> {
 }
 
 /// The first surface along a ray that is not only mirror, glass or transparent; lamps do not count.
-fn first_scatterer<'a>(
+pub(super) fn first_scatterer<'a>(
     lit: &'a LitScene<'a>,
     mut ray: Ray,
     max_depth: u32,

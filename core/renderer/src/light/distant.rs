@@ -32,6 +32,12 @@ impl SceneBall {
         PI * self.radius * self.radius
     }
 
+    /// The numbers from which [`SceneBall::photon`] makes one along `direction` through `p`.
+    pub(super) fn position_through(&self, p: Vec3, direction: Vec3) -> [f32; 2] {
+        let across = Frame::new(direction).to_local(p - self.center).truncate();
+        warp::from_disk(across / self.radius.max(f32::MIN_POSITIVE))
+    }
+
     /// A photon that travels along `direction` through a place uniform over the disk.
     pub(super) fn photon(&self, direction: Vec3, flux: Rgb, u: [f32; 2]) -> Photon {
         let across = warp::disk(u) * self.radius;

@@ -4,10 +4,14 @@
 //!
 //! All is in scene space. Lamps have Blender's units and agree with Cycles: see each file for its formulas.
 
+mod aim;
 mod area;
 mod cluster;
+mod direction_table;
 mod distant;
 mod emitter;
+mod environment;
+mod far;
 mod point;
 mod proxy;
 mod select;
@@ -26,9 +30,12 @@ use glam::Vec3;
 
 use crate::color::Rgb;
 use crate::scene::{Scene, World};
+use aim::Aim;
+pub use aim::Find;
 use cluster::Cluster;
 use distant::SceneBall;
 use emitter::MeshEmitter;
+pub use environment::Environment;
 pub use proxy::LampProxy;
 use select::{Cdf, Choice};
 use shape::{Light, Shape};
@@ -181,11 +188,13 @@ pub struct Lights {
     /// Index into `lights` of each object that emits.
     light_of_object: Vec<Option<usize>>,
     world: WorldLight,
-    /// The world emits, be it seen by photons or not.
-    has_world: bool,
     ball: SceneBall,
-    /// Over `lights` and then the world, by flux: the choice of photons.
-    by_flux: Option<Cdf>,
+    /// Of `lights` and then the world: how often photons choose them, by default by their flux.
+    photon_weights: Vec<f64>,
+    /// The choice by these weights.
+    by_weight: Option<Cdf>,
+    /// How the photons of each of them are aimed.
+    aims: Vec<Option<Aim>>,
     total_flux: Rgb,
 }
 
@@ -194,12 +203,18 @@ impl Lights {
     /// Lamps without power or size are left out; negative channels count as zero.
     #[must_use]
     pub fn build(scene: &Scene, emission: &[Rgb]) -> Self {
-        Self::with_world(scene, emission, &scene.world)
+        let environment = Environment::new(&scene.world, &scene.textures);
+        Self::with_world(scene, emission, &scene.world, environment)
     }
 
-    /// As [`Lights::build`], in another world than the scene's own.
+    /// As [`Lights::build`], in another world than the scene's own; `environment` is what its program gives.
     #[must_use]
-    pub fn with_world(scene: &Scene, emission: &[Rgb], world: &World) -> Self {
+    pub fn with_world(
+        scene: &Scene,
+        emission: &[Rgb],
+        world: &World,
+        environment: Option<Environment>,
+    ) -> Self {
         let emission: Vec<Rgb> = emission.iter().map(|&radiance| positive(radiance)).collect();
         let mut lights: Vec<Light> = scene
             .lamps
@@ -216,8 +231,7 @@ impl Lights {
             }
         }
         let ball = SceneBall::new(scene.bounds);
-        let has_world = !positive(world.radiance).is_black();
-        let world = WorldLight::new(world);
+        let world = WorldLight::new(world, environment);
         let mut fluxes: Vec<Rgb> = lights.iter().map(|light| light.flux(&ball)).collect();
         fluxes.push(world.flux(&ball));
         let means: Vec<f64> = fluxes.iter().map(|flux| f64::from(flux.mean())).collect();
@@ -238,9 +252,10 @@ impl Lights {
             lights,
             light_of_object,
             world,
-            has_world,
             ball,
-            by_flux: Cdf::with_even_share(&means),
+            by_weight: Cdf::with_even_share(&means),
+            aims: vec![None; means.len()],
+            photon_weights: means,
             total_flux: fluxes.into_iter().sum(),
         }
     }
@@ -248,7 +263,7 @@ impl Lights {
     /// True when nothing emits at all, the world included.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.lights.is_empty() && !self.has_world
+        self.lights.is_empty() && self.world.is_black()
     }
 
     /// Memory (bytes) of the tables over the triangles of emissive meshes.
@@ -261,8 +276,20 @@ impl Lights {
     /// Memory (bytes) of all but [`Lights::emitter_bytes`].
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let tables = self.by_flux.as_ref().map_or(0, Cdf::bytes) + self.tree.bytes();
+        let tables = self.by_weight.as_ref().map_or(0, Cdf::bytes) + self.tree.bytes();
         self.lights.len() * size_of::<Light>() + self.emitters.len() * size_of::<Emitter>() + tables
+    }
+
+    /// Memory (bytes) of what is known about the world.
+    #[must_use]
+    pub fn world_bytes(&self) -> usize {
+        self.world.bytes()
+    }
+
+    /// True where light comes from outside the scene, suns aside.
+    #[must_use]
+    pub fn has_world(&self) -> bool {
+        !self.world.is_black()
     }
 
     /// Flux emitted into the scene (W × squared length scale), the world included.
@@ -287,42 +314,65 @@ impl Lights {
         self.lights.iter().filter_map(proxy).collect()
     }
 
-    /// One photon: `u[0]` chooses the light by flux, `u[1..3]` the place, `u[3..5]` the direction. `None` when nothing
+    /// One photon: `u[0]` chooses the light, `u[1..3]` the place, `u[3..5]` the direction. `None` when nothing
     /// emits into the scene.
     #[must_use]
     pub fn emit(&self, u: [f32; 5]) -> Option<Emission> {
-        let [choice, position @ .., d0, d1] = u;
-        let direction = [d0, d1];
-        let chosen = self.by_flux.as_ref()?.choose(choice);
-        let light = self.lights.get(chosen.index);
+        let [choice, numbers @ ..] = u;
+        let chosen = self.by_weight.as_ref()?.choose(choice);
+        let emission = self.emission(chosen.index, chosen.rest, numbers);
+        let point = emission.point.map(|point| point.chosen_with(chosen.probability));
+        Some(Emission { flux: emission.flux / chosen.probability, point, ..emission })
+    }
+
+    /// A photon of one light, which is then not chosen: its flux is that of the light. Lights are numbered as by
+    /// [`Lights::distant`].
+    #[must_use]
+    pub fn emit_from(&self, light: usize, numbers: [f32; 4]) -> Emission {
+        self.emission(light, 0.0, numbers)
+    }
+
+    /// `choice` is for lights of many parts.
+    fn emission(&self, index: usize, choice: f32, numbers: [f32; 4]) -> Emission {
+        let (numbers, density) = self.aims[index].as_ref().map_or((numbers, 1.0), |aim| aim.warp(numbers));
+        let [x, y, d0, d1] = numbers;
+        let (position, direction) = ([x, y], [d0, d1]);
+        let light = self.lights.get(index);
         let photon = match light.map(|light| &light.shape) {
             None => self.world.emit(&self.ball, position, direction),
             Some(Shape::Point(lamp)) => lamp.emit(position, direction),
             Some(Shape::Area(lamp)) => lamp.emit(position, direction),
             Some(Shape::Sun(lamp)) => lamp.emit(&self.ball, position, direction),
-            Some(Shape::Mesh(mesh)) => mesh.emit(chosen.rest, position, direction),
+            Some(Shape::Mesh(mesh)) => mesh.emit(choice, position, direction),
         };
-        Some(Emission {
+        Emission {
             origin: photon.origin,
             direction: photon.direction,
-            flux: photon.flux / chosen.probability,
+            flux: photon.flux / density,
             normal: photon.normal,
             lit_from: photon.lit_from,
             casts_shadow: light.is_none_or(|light| light.casts_shadow),
             lamp: light.and_then(|light| light.lamp),
-            visibility: light.map_or(u32::MAX, |light| light.visibility),
-            point: photon.point.map(|point| point.chosen_with(chosen.probability)),
-        })
+            visibility: light.map_or(self.world.visibility, |light| light.visibility),
+            point: photon.point,
+        }
     }
 
-    /// A direction from the receiver towards a lamp or an emissive triangle: `u[0]` chooses it, `u[1..3]` the place on it.
+    /// A direction from the receiver towards a lamp, an emissive triangle or a world that is not the same on all sides:
+    /// `u[0]` chooses it, `u[1..3]` the place on it.
     /// `None` where the sample contributes nothing.
     #[must_use]
     pub fn sample_direct(&self, receiver: impl Into<Receiver>, u: [f32; 3]) -> Option<DirectSample> {
         let [choice, position @ ..] = u;
         let receiver = receiver.into();
         let p = receiver.p;
+        let of_world = self.world_share(&receiver);
+        if choice < of_world {
+            return self.sample_world(of_world, position);
+        }
+        let choice = if of_world > 0.0 { (choice - of_world) / (1.0 - of_world) } else { choice };
         let chosen = self.choose(&receiver, choice)?;
+        let probability = chosen.probability * (1.0 - of_world);
         let emitter = &self.emitters[chosen.index];
         let light = &self.lights[emitter.light as usize];
         let sample = match &light.shape {
@@ -334,8 +384,8 @@ impl Lights {
         Some(DirectSample {
             wi: sample.wi,
             distance: sample.distance,
-            radiance_over_pdf: sample.radiance_over_pdf / chosen.probability,
-            pdf_solid_angle: sample.pdf * chosen.probability,
+            radiance_over_pdf: sample.radiance_over_pdf / probability,
+            pdf_solid_angle: sample.pdf * probability,
             is_delta: sample.is_delta || !light.casts_shadow,
             casts_shadow: light.casts_shadow,
             visibility: light.visibility,
@@ -420,12 +470,14 @@ impl Lights {
         self.tree.choose(receiver, u, |index| self.irradiance_estimate(receiver, index))
     }
 
-    /// Probability with which [`Lights::choose`] chooses an emitter.
+    /// Probability with which [`Lights::sample_direct`] chooses an emitter.
     fn choice_probability(&self, receiver: &Receiver, index: usize) -> f32 {
-        if self.emitters.len() == 1 {
-            return 1.0;
-        }
-        self.tree.probability(receiver, index, |index| self.irradiance_estimate(receiver, index))
+        let among_emitters = if self.emitters.len() == 1 {
+            1.0
+        } else {
+            self.tree.probability(receiver, index, |index| self.irradiance_estimate(receiver, index))
+        };
+        among_emitters * (1.0 - self.world_share(receiver))
     }
 
     /// About the irradiance an emitter gives the receiver; 0 only where there is none.

@@ -59,6 +59,16 @@ impl Tree {
         Self { nodes, order, place }
     }
 
+    /// About the irradiance all emitters together give the receiver; `weigh` says it of one emitter.
+    pub(super) fn irradiance(&self, receiver: &Receiver, weigh: impl Fn(usize) -> f32) -> f32 {
+        match self.children(0) {
+            Some(children) => {
+                children.map(|child| self.nodes[child].cluster.irradiance(receiver)).iter().sum()
+            }
+            None => self.order.iter().map(|&index| weigh(index as usize)).sum(),
+        }
+    }
+
     /// Memory (bytes).
     pub(super) fn bytes(&self) -> usize {
         self.nodes.len() * size_of::<Node>() + (self.order.len() + self.place.len()) * size_of::<u32>()

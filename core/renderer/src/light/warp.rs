@@ -17,6 +17,21 @@ pub(super) fn disk(u: [f32; 2]) -> Vec2 {
     Vec2::from_angle(angle) * radius
 }
 
+/// The numbers that [`disk`] takes to a point of the unit disk.
+pub(super) fn from_disk(p: Vec2) -> [f32; 2] {
+    let radius = p.length();
+    let (a, b) = if p.x.abs() > p.y.abs() {
+        let a = radius.copysign(p.x);
+        (a, a * (p.y / p.x).atan() / FRAC_PI_4)
+    } else if p.y != 0.0 {
+        let b = radius.copysign(p.y);
+        (b * (p.x / p.y).atan() / FRAC_PI_4, b)
+    } else {
+        (0.0, 0.0)
+    };
+    [a, b].map(|c| (0.5 * (c + 1.0)).clamp(0.0, 1.0))
+}
+
 /// A direction of the cone about `axis` that holds `1 − cos` up to `one_minus_cos`, with its own `1 − cos`. The pdf per
 /// solid angle is 1 / (2π `one_minus_cos`). Written in 1 − cos, which stays exact for narrow cones.
 pub(super) fn cone(axis: Vec3, one_minus_cos: f32, u: [f32; 2]) -> (Vec3, f32) {

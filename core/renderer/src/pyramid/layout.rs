@@ -170,7 +170,8 @@ impl Layout {
         // Nearest first: across the closest face, the next face, then the edge between them, and so on.
         let (a, b, c) = (1 << axes[0], 1 << axes[1], 1 << axes[2]);
         [a, b, a | b, c, a | c, b | c, a | b | c].into_iter().find_map(|across: usize| {
-            let step = |axis: usize| if across >> axis & 1 == 1 { cell_size.copysign(fraction[axis]) } else { 0.0 };
+            let step =
+                |axis: usize| if across >> axis & 1 == 1 { cell_size.copysign(fraction[axis]) } else { 0.0 };
             let beside = offset + Vec3::new(step(0), step(1), step(2));
             let (level, cell) = self.grid.locate(beside, self.grid.finest())?;
             Some((level, self.levels[level].index.find(cell, class)?))
@@ -246,7 +247,8 @@ fn counted([mut surface, hidden]: [CellSurface; 2]) -> CellSurface {
 
 /// Sorts the cells by level and adds every cell's ancestors.
 fn levels(grid: &Grid, classes: NormalClasses, cells: Cells) -> Vec<LevelLayout> {
-    let mut by_level: Vec<FxHashMap<CellKey, [CellSurface; 2]>> = vec![FxHashMap::default(); grid.levels.len()];
+    let mut by_level: Vec<FxHashMap<CellKey, [CellSurface; 2]>> =
+        vec![FxHashMap::default(); grid.levels.len()];
     let mut cells = cells;
     hide_contacts(grid, classes, &mut cells);
     for ((level, key), surfaces) in cells {

@@ -43,7 +43,9 @@ pub(super) fn open(lit: &LitScene<'_>, base_cell_size: f32, points: &[SidePoint]
             lit.accel.intersect_packet(&mut packet);
             for (lane, &i) in sixteen.iter().enumerate() {
                 let hit = packet.hit(lane);
-                if hit.is_some_and(|hit| ends(lit, base_cell_size, &points[i], packet.ray(lane).direction, &hit)) {
+                if hit.is_some_and(|hit| {
+                    ends(lit, base_cell_size, &points[i], packet.ray(lane).direction, &hit)
+                }) {
                     ended.push(i);
                 } else {
                     open[i] = true;

@@ -7,11 +7,12 @@ use glam::{DAffine3, DMat4, DVec3, Vec3};
 
 use super::mesh::{self, MeshArrays};
 use super::record::{
-    CameraRecord, LampRecord, LampShape, MaterialRecord, ObjectInfo, WorldRecord, matrix, visibility,
+    CameraRecord, LampRecord, LampShape, MaterialRecord, ObjectInfo, WorldProgramRecord, WorldRecord, matrix,
+    visibility,
 };
 use super::{
     Camera, Lamp, Lens, Material, MaterialProgram, Mesh, Object, Problem, Projection, Scene, SceneSpace,
-    World,
+    World, WorldProgram,
 };
 use crate::color::Rgb;
 use crate::error::RenderError;
@@ -154,20 +155,12 @@ impl SceneBuilder {
         let objects = self.place_objects(&space);
         let materials = self.take_materials()?;
         let bounds = bounds_of(&objects);
-        let mut world = World {
-            radiance: self.world.radiance.map(|c| c.max(0.0)),
-            visibility: self.world.visibility,
-            film_transparent: self.world.film_transparent,
-        };
-        if !self.world.radiance.is_finite() {
-            self.problems.add("World", "its color is not a number; black is used", 1);
-            world.radiance = Rgb::BLACK;
-        }
+        let world = self.take_world()?;
         if objects.is_empty() {
             self.problems.add("Scene", "there is no surface to render; only the background is drawn", 1);
         }
         let problems = self.problems.into_list();
-        let textures = self.textures;
+        let textures = self.textures.into();
         Ok(Scene { space, objects, materials, textures, lamps, camera, world, bounds, problems })
     }
 
@@ -261,11 +254,36 @@ impl SceneBuilder {
         lamps
     }
 
+    fn take_world(&mut self) -> Result<World, RenderError> {
+        let WorldRecord { name, radiance, program, visibility, film_transparent } =
+            std::mem::take(&mut self.world);
+        if !radiance.is_finite() {
+            self.problems.add(&name, "the world's color is not a number; black is used", 1);
+        }
+        let radiance = if radiance.is_finite() { radiance.map(|c| c.max(0.0)) } else { Rgb::BLACK };
+        let textures = self.textures.len();
+        let program = program.map(|record| checked_world_program(record, &name, textures)).transpose()?;
+        Ok(World { name, radiance, program, visibility, film_transparent })
+    }
+
     fn take_materials(&mut self) -> Result<Vec<Material>, RenderError> {
         let textures = self.textures.len();
         let records = std::mem::take(&mut self.materials).into_iter();
         records.map(|record| checked_material(record, textures)).collect()
     }
+}
+
+fn checked_world_program(
+    record: WorldProgramRecord,
+    name: &str,
+    textures: usize,
+) -> Result<WorldProgram, RenderError> {
+    let fault = |what: String| RenderError::Scene(format!("world '{name}': {what}"));
+    let program = Program::new(record.instructions, textures).map_err(fault)?;
+    if record.radiance as usize >= program.len() {
+        return Err(fault(format!("its program has no register {}", record.radiance)));
+    }
+    Ok(WorldProgram { program, radiance: record.radiance })
 }
 
 fn checked_material(record: MaterialRecord, textures: usize) -> Result<Material, RenderError> {

@@ -185,12 +185,38 @@ pub struct Camera {
 /// Light from outside the scene.
 #[derive(Debug, Clone, Default)]
 pub struct World {
-    /// Radiance (W·m⁻²·sr⁻¹).
+    /// Blender's name, for messages.
+    pub name: String,
+    /// Radiance (W·m⁻²·sr⁻¹); a typical value where a program computes it.
     pub radiance: Rgb,
+    /// What computes the radiance where it differs from direction to direction.
+    pub program: Option<WorldProgram>,
     /// Ray kinds that see it.
     pub visibility: u32,
     /// True: camera rays that leave the scene give alpha 0.
     pub film_transparent: bool,
+}
+
+impl World {
+    /// True where no light comes from.
+    #[must_use]
+    pub fn is_black(&self) -> bool {
+        self.radiance.is_black() && self.program.is_none()
+    }
+
+    /// Takes all light out of it.
+    pub fn blacken(&mut self) {
+        (self.radiance, self.program) = (Rgb::BLACK, None);
+    }
+}
+
+/// The radiance of a world that differs from direction to direction.
+#[derive(Debug, Clone)]
+pub struct WorldProgram {
+    /// What is computed.
+    pub program: Program,
+    /// The result that is the radiance.
+    pub radiance: Register,
 }
 
 /// Something wrong with the input that does not stop the render.
@@ -214,7 +240,7 @@ pub struct Scene {
     /// Materials.
     pub materials: Vec<Material>,
     /// Images that programs look up.
-    pub textures: Vec<Texture>,
+    pub textures: Arc<[Texture]>,
     /// Lamps of non-zero power.
     pub lamps: Vec<Lamp>,
     /// Camera.

@@ -377,12 +377,26 @@ pub struct CameraRecord {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct WorldRecord {
-    /// Radiance of the background (W·m⁻²·sr⁻¹).
+    /// Blender's name, for messages.
+    pub name: String,
+    /// Radiance of the background (W·m⁻²·sr⁻¹); a typical value where it varies.
     pub radiance: Rgb,
+    /// What computes the radiance where it varies.
+    pub program: Option<WorldProgramRecord>,
     /// Ray kinds that see the background.
     pub visibility: u32,
     /// True: camera rays that leave the scene give alpha 0.
     pub film_transparent: bool,
+}
+
+/// What computes the radiance of a world from a direction. Positions are unit vectors towards where the light comes from.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WorldProgramRecord {
+    /// What is computed; operands name earlier instructions.
+    pub instructions: Vec<Instruction>,
+    /// The result that is the radiance.
+    pub radiance: Register,
 }
 
 /// Row-major 4×4 rows to a matrix acting on column vectors.

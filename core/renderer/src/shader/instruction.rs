@@ -107,6 +107,11 @@ pub enum Instruction {
         interpolation: Interpolation,
         unassociate: bool,
     },
+    /// Where a direction lies in an equirectangular panorama, or in the picture of a mirror ball.
+    Panorama { vector: Register, ball: bool },
+    /// The disk of a sun of an angular radius (rad) in the direction `towards`, seen along `vector`: colors at its lowest and
+    /// highest points, darker towards the limb; black around it and below a height (sine).
+    SunDisk { vector: Register, towards: [f32; 3], radius: f32, bottom: [f32; 3], top: [f32; 3], lowest: f32 },
     /// A texture projected along the object's three axes, by the normal; `vector` in the object's space.
     BoxImage {
         texture: u32,
@@ -186,6 +191,8 @@ impl Instruction {
             Self::Constant { .. } | Self::Attribute { .. } | Self::Geometry { .. } => smallvec![],
             Self::Transform { vector, .. }
             | Self::Normalize { vector }
+            | Self::Panorama { vector, .. }
+            | Self::SunDisk { vector, .. }
             | Self::Image { vector, .. }
             | Self::Gradient { vector, .. } => smallvec![vector],
             Self::Mapping { vector, location, rotation, scale } => {

@@ -10,6 +10,7 @@
 mod arithmetic;
 mod instruction;
 mod noise;
+mod panorama;
 mod pattern;
 mod run;
 mod surface;
@@ -103,6 +104,27 @@ impl Program {
     #[must_use]
     pub fn len(&self) -> usize {
         self.0.len()
+    }
+
+    /// True where something asked of the point is one of `quantities`.
+    #[must_use]
+    pub fn asks(&self, quantities: &[Quantity]) -> bool {
+        let is_asked = |step: &Instruction| matches!(step, Instruction::Geometry { quantity, .. } if quantities.contains(quantity));
+        self.0.iter().any(is_asked)
+    }
+
+    /// In how many columns a panorama must be divided to show all details: those of the widest texture, or about four across
+    /// a sun; 0 without either.
+    #[must_use]
+    pub fn columns(&self, textures: &[Texture]) -> usize {
+        let width = |step: &Instruction| match *step {
+            Instruction::Image { texture, .. } | Instruction::BoxImage { texture, .. } => {
+                textures[texture as usize].size()[0]
+            }
+            Instruction::SunDisk { radius, .. } => (4.0 * std::f32::consts::PI / radius.max(1e-6)) as usize,
+            _ => 0,
+        };
+        self.0.iter().map(width).max().unwrap_or(0)
     }
 
     /// True where nothing is computed.

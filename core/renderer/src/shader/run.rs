@@ -7,7 +7,7 @@ use super::arithmetic::{self, BlendMode, MathFunction, VectorFunction};
 use super::instruction::{Instruction, Register};
 use super::surface::{self, BumpHeights};
 use super::texture::Texture;
-use super::{Point, Program, Registers, Value, pattern};
+use super::{Point, Program, Registers, Value, panorama, pattern};
 
 impl Program {
     /// Every register at `point`.
@@ -82,6 +82,8 @@ fn execute(
         Instruction::Transform { .. }
         | Instruction::Mapping { .. }
         | Instruction::Normalize { .. }
+        | Instruction::Panorama { .. }
+        | Instruction::SunDisk { .. }
         | Instruction::Combine { .. }
         | Instruction::Alpha { .. }
         | Instruction::Channel { .. }
@@ -111,6 +113,11 @@ fn vectors(instruction: &Instruction, r: &Operands<'_>) -> Value {
             Value { v: v.extend(1.0), width: r.width(vector) * size.abs().max_element() }
         }
         Instruction::Normalize { vector } => Value::vector(r.vector(vector).normalize_or_zero()),
+        Instruction::Panorama { vector, ball } => panorama::place(r.value(vector), ball),
+        Instruction::SunDisk { vector, towards, radius, bottom, top, lowest } => {
+            let disk = panorama::SunDisk { towards, radius, bottom, top, lowest };
+            disk.seen(r.value(vector))
+        }
         Instruction::Combine { x, y, z } => {
             let v = Vec3::new(r.number(x), r.number(y), r.number(z));
             Value { v: v.extend(1.0), width: r.width(x).max(r.width(y)).max(r.width(z)) }

@@ -119,6 +119,12 @@ impl Texture {
         Ok(Self { levels, encoding })
     }
 
+    /// Width and height in texels.
+    #[must_use]
+    pub fn size(&self) -> [usize; 2] {
+        self.levels[0].size
+    }
+
     /// Memory of all levels.
     #[must_use]
     pub fn bytes(&self) -> usize {

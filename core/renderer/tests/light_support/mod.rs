@@ -67,7 +67,7 @@ pub(crate) fn scene(lamps: Vec<Lamp>, objects: Vec<Object>, world_radiance: f32)
         space: SceneSpace { center: DVec3::ZERO, scale: 1.0 },
         objects,
         materials: vec![material; 8],
-        textures: Vec::new(),
+        textures: Vec::new().into(),
         lamps,
         camera: Camera {
             name: "camera".into(),
@@ -82,7 +82,7 @@ pub(crate) fn scene(lamps: Vec<Lamp>, objects: Vec<Object>, world_radiance: f32)
         world: World {
             radiance: Rgb::splat(world_radiance),
             visibility: visibility::ALL,
-            film_transparent: false,
+            ..World::default()
         },
         bounds: [Vec3::splat(-0.5), Vec3::splat(0.5)],
         problems: Vec::new(),

@@ -161,7 +161,8 @@ pub(crate) fn point_lamp(power: f32, position: DVec3) -> LampRecord {
 
 /// A uniform world seen by everything.
 pub(crate) fn world(radiance: f32) -> WorldRecord {
-    WorldRecord { radiance: Rgb::splat(radiance), visibility: visibility::ALL, film_transparent: false }
+    let (radiance, visibility) = (Rgb::splat(radiance), visibility::ALL);
+    WorldRecord { name: "World".into(), radiance, visibility, ..WorldRecord::default() }
 }
 
 /// Row-major rows of a matrix.
