@@ -133,10 +133,12 @@ fn lamps_without_shadows_are_left_to_direct_sampling() {
 }
 
 #[test]
-fn photons_do_not_start_at_a_world_diffuse_surfaces_do_not_see() {
+fn photons_do_not_start_at_a_world_that_no_surface_sees() {
     let mut scene = scene(vec![lamp(POINT, 3.0, Vec3::ZERO)], Vec::new(), 5.0);
-    scene.world.visibility = visibility::CAMERA | visibility::GLOSSY;
+    scene.world.visibility = visibility::CAMERA;
     assert_close(f64::from(Lights::build(&scene, &[]).total_flux().0[0]), 3.0, 1e-6);
+    scene.world.visibility = visibility::CAMERA | visibility::GLOSSY;
+    assert!(Lights::build(&scene, &[]).total_flux().0[0] > 3.1);
 }
 
 /// Numbers a file may hold.
