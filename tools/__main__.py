@@ -1,4 +1,4 @@
-"""The commands behind the Makefile: `python3 -m tools render | test | lint | bench | tables | extension | clean`."""
+"""The commands behind the Makefile: `python3 -m tools render | test | hard | lint | bench | tables | …`."""
 
 from __future__ import annotations
 
@@ -53,6 +53,14 @@ def test(options: argparse.Namespace) -> None:
     if failed:
         sys.exit(f"error: failed: {', '.join(failed)}")
     say(f"every test passed: cargo test, and pytest with bpy {', '.join(bpys)}")
+
+
+def hard(options: argparse.Namespace) -> None:
+    """Every hard case with the edge it breaks at, into docs/stability.md and docs/stability.json."""
+    python = make_blender(available_bpys(options.bpy)[-1])
+    pytest = [python, "-m", "pytest", "tests/hard", *options.more]
+    if timed("hard cases", pytest, ROOT, RGP_STABILITY=str(ROOT / "docs")):
+        sys.exit("error: a hard case failed; docs/stability.md says which")
 
 
 def timed(name: str, command: Command, directory: Path, **variables: str) -> int:
@@ -118,7 +126,7 @@ def main() -> None:
     """Reads the command line and runs one command."""
     parser = argparse.ArgumentParser(prog="python3 -m tools", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
-    for command in (render, test, lint, bench, tables, extension, clean):
+    for command in (render, test, hard, lint, bench, tables, extension, clean):
         subparser = commands.add_parser(command.__name__, help=command.__doc__)
         subparser.set_defaults(run=command)
         subparser.add_argument(
