@@ -79,7 +79,7 @@ class RGP_PT_performance(ClosedEnginePanel, Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        draw_settings(self.layout, context.scene.rgp.render, "threads", "seed")
+        draw_settings(self.layout, context.scene.rgp.render, "threads", "seed", "memory_limit")
         draw_settings(self.layout, context.scene.rgp.film, "tile_size")
 
 

@@ -1,6 +1,7 @@
 //! The order of everything.
 
 mod baselines;
+mod memory;
 mod openness;
 
 use std::path::Path;
@@ -27,6 +28,9 @@ use crate::scene::Scene;
 use crate::settings::{EstimatorKind, RenderSettings, parse_bins};
 use crate::shader::Texture;
 use crate::stats::{EstimatorStats, Stats, TextureCounts};
+
+use memory::Budget;
+pub use memory::check_memory;
 
 /// Renders `scene` into `film`, with Embree from the file `library`. `stats` grows as passes end, so that it is worth
 /// reading after a cancel too.
@@ -120,14 +124,21 @@ impl Work<'_> {
         let Work { lit, settings, progress, .. } = *self;
         progress.enter(Stage::Layout);
         let clock = Instant::now();
-        let layout = layout(lit, settings, progress)?;
+        let [elevation, azimuth] = parse_bins(&settings.pyramid.bins)?;
+        let bins = lit.plan.direction_bins().then_some(DirectionBins { elevation, azimuth });
+        let wanted = settings.pyramid.finest_resolution;
+        let seen = seen(lit, settings.render.seed);
+        let measure = |resolution| layout(lit, settings, seen, resolution, progress);
+        let budget = Budget::new(lit.accel.scene(), settings)?;
+        let (layout, resolution) = budget.fit(wanted, bins, measure)?;
+        if resolution < wanted {
+            stats.warnings.push(format!("the memory limit allows {resolution} cells instead of {wanted}"));
+        }
         stats.pyramid.cell_size =
             f64::from(layout.grid.levels[layout.grid.finest()].cell_size) / lit.accel.scene().space.scale;
         stats.seconds.pyramid = clock.elapsed().as_secs_f64();
         progress.check()?;
 
-        let [elevation, azimuth] = parse_bins(&settings.pyramid.bins)?;
-        let bins = lit.plan.direction_bins().then_some(DirectionBins { elevation, azimuth });
         // A single pass has nothing to be compared with and reads all photons.
         let sets = SETS.min(settings.gather.camera_samples as usize);
         let accumulator = Accumulator::new(&layout, lit.lights.total_flux().max_channel(), bins);
@@ -225,14 +236,24 @@ fn light<'a>(
     Ok(LitScene { accel, materials, lights, world, plan })
 }
 
-/// The cells, over what the camera and its gather rays see.
-fn layout(lit: &LitScene<'_>, settings: &RenderSettings, progress: &Progress) -> Result<Layout, RenderError> {
+/// A box around what the camera and its gather rays see.
+fn seen(lit: &LitScene<'_>, seed: u32) -> [DVec3; 2] {
+    let points = if lit.plan.indirect() { gather::seen_points(lit, seed) } else { Vec::new() };
+    seen_bounds(points, lit.accel.scene().bounds)
+}
+
+/// The cells, `resolution` of them along the box `seen`.
+fn layout(
+    lit: &LitScene<'_>,
+    settings: &RenderSettings,
+    seen: [DVec3; 2],
+    resolution: u32,
+    progress: &Progress,
+) -> Result<Layout, RenderError> {
     let scene = lit.accel.scene();
-    let seen = if lit.plan.indirect() { gather::seen_points(lit, settings.render.seed) } else { Vec::new() };
-    let seen = seen_bounds(seen, scene.bounds);
     let bounds = scene.bounds.map(Vec3::as_dvec3);
     let world_origin = -scene.space.center * scene.space.scale;
-    let grid = Grid::new(seen, bounds, settings.pyramid.finest_resolution, world_origin);
+    let grid = Grid::new(seen, bounds, resolution, world_origin);
     let classes =
         if settings.pyramid.normal_classes == "54" { NormalClasses::FiftyFour } else { NormalClasses::Six };
     let mut triangles: Vec<(u32, u32)> = Vec::new();

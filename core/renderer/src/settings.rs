@@ -150,6 +150,8 @@ pub struct MachineSettings {
     pub threads: u32,
     /// Another seed gives another, equally good picture.
     pub seed: u32,
+    /// Memory (MiB) that picture, ray tracer and pyramid may take together; 0 sets no limit.
+    pub memory_limit: u32,
 }
 
 /// All knobs.
@@ -308,6 +310,7 @@ pub const KNOBS: &[Knob] = &[
     knob("film", "tile_size", int(4, 4096), "pixels", "Edge of the tiles the picture is cut into; changes nothing in the picture"),
     knob("render", "threads", int(0, 1024), "threads", "Threads to use; 0 takes all; changes nothing in the picture"),
     knob("render", "seed", int(0, 2_147_483_647), "", "Another seed gives other noise"),
+    knob("render", "memory_limit", int(0, 16_777_216), "MiB", "Memory a render may take: past it cells are made coarser, or the render is refused; 0 takes nine tenths of the machine's"),
 ];
 
 /// Elevation and azimuth counts of `8x16`.

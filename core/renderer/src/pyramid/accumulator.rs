@@ -154,6 +154,18 @@ impl<'a> Accumulator<'a> {
         self.lost.load(Ordering::Relaxed)
     }
 
+    /// Memory (bytes) that the accumulator of a layout takes at most, and the pyramid that is made of it.
+    #[must_use]
+    pub fn bytes_for(layout: &Layout, bins: Option<DirectionBins>) -> usize {
+        let cell = 2 * (size_of::<[[i64; 3]; SETS]>() + size_of::<u32>());
+        let cells: usize = layout.levels.iter().map(|level| level.index.len()).sum();
+        let Some(bins) = bins else { return cells * cell };
+        let bin_sums = SETS * bins.count().div_ceil(LANES) * size_of::<[[i64; LANES]; 3]>();
+        let surfaces = layout.levels.iter().flat_map(|level| &level.surfaces);
+        let glossy = surfaces.filter(|surface| surface.glossy_area > 0).count();
+        cells * (cell + size_of::<Mutex<GlossySums>>()) + glossy * 2 * bin_sums
+    }
+
     /// Memory (bytes).
     #[must_use]
     pub fn bytes(&self) -> usize {

@@ -99,8 +99,9 @@ impl<'a> View<'a> {
                 self.find_finer(found, offset, class, level)
             }
             Some(found) => Some(found),
-            None => (self.find_across(offset, class, level))
-                .or_else(|| self.find_coarser(cell, class, level)),
+            None => {
+                (self.find_across(offset, class, level)).or_else(|| self.find_coarser(cell, class, level))
+            }
         }
     }
 
