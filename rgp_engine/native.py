@@ -55,7 +55,7 @@ def versions() -> dict[str, str]:
 
 
 def memory_allowed() -> int:
-    """Memory (MiB) a render may take when the user sets no limit: nine tenths of the machine's; 0 where that is unknown."""
+    """Memory (MiB) a render may take when the user sets no limit: 90 % of the machine's; 0 where that is unknown."""
     try:
         total = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, OSError, ValueError):

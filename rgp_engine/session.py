@@ -73,8 +73,9 @@ class RenderSession:
         scene = exported.finish((b_result.resolution_x, b_result.resolution_y))
         self._log.add_records(scene.problems)
         settings = core_settings(self._b_depsgraph.scene_eval)
-        limit = settings["render"]["memory_limit"] or native.memory_allowed()
-        limited = {**settings, "render": {**settings["render"], "memory_limit": limit}}
+        machine = settings.get("render", {})
+        limit = machine.get("memory_limit") or native.memory_allowed()
+        limited = {**settings, "render": {**machine, "memory_limit": limit}}
         core_session = native.core().Session(scene, limited, str(native.embree_library()))
         self._error_target = settings["gather"]["error_target"]
         core_session.start()

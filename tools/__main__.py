@@ -1,4 +1,4 @@
-"""The commands behind the Makefile: `python3 -m tools render | test | hard | lint | bench | tables | …`."""
+"""The commands behind the Makefile: `python3 -m tools render | test | hard | fuzz | lint | bench | tables | …`."""
 
 from __future__ import annotations
 
@@ -61,6 +61,14 @@ def hard(options: argparse.Namespace) -> None:
     pytest = [python, "-m", "pytest", "tests/hard", *options.more]
     if timed("hard cases", pytest, ROOT, RGP_STABILITY=str(ROOT / "docs")):
         sys.exit("error: a hard case failed; docs/stability.md says which")
+
+
+def fuzz(options: argparse.Namespace) -> None:
+    """Random input through the scene builder, records, settings, textures and the node compiler."""
+    python = make_blender(available_bpys(options.bpy)[-1])
+    pytest = [python, "-m", "pytest", "tests/hard/test_hostile.py", *options.more]
+    if timed("hostile input", pytest, ROOT, RGP_EXAMPLES="3000"):
+        sys.exit("error: some input was not met with a message")
 
 
 def timed(name: str, command: Command, directory: Path, **variables: str) -> int:
@@ -126,7 +134,7 @@ def main() -> None:
     """Reads the command line and runs one command."""
     parser = argparse.ArgumentParser(prog="python3 -m tools", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
-    for command in (render, test, hard, lint, bench, tables, extension, clean):
+    for command in (render, test, hard, fuzz, lint, bench, tables, extension, clean):
         subparser = commands.add_parser(command.__name__, help=command.__doc__)
         subparser.set_defaults(run=command)
         subparser.add_argument(

@@ -22,7 +22,8 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """What takes minutes or gigabytes runs only where the page is written."""
+    """What takes minutes or gigabytes runs only where the page is written, and last."""
+    items.sort(key=lambda item: item.get_closest_marker("heavy") is not None)
     for item in items:
         if item.get_closest_marker("heavy") and not FOLDER:
             item.add_marker(pytest.mark.skip(reason="runs in `make hard`"))

@@ -2,7 +2,6 @@
 
 import ctypes
 import gc
-import statistics
 import threading
 from pathlib import Path
 
@@ -91,8 +90,11 @@ def test_two_hundred_renders(check, tmp_path, monkeypatch):
     for i in range(200):
         one_round(i, path, monkeypatch)
         memory.append(memory_of_process())
-    grown = statistics.median(memory[-50:]) / statistics.median(memory[:50])
-    check("200 renders: memory of the last 50 over the first 50", expected=1.0, got=grown, bound=0.02)
+    # The least of many: what the allocator keeps for later comes and goes, a leak stays.
+    grown = min(memory[-100:]) / min(memory[:100]) - 1.0
+    check(
+        "200 renders: growth of memory, second half over first", expected=0.0, got=max(0.0, grown), bound=0.02
+    )
     check(
         "200 renders: threads left behind", expected=0.0, got=max(0, threads_of_process() - tasks), bound=0.0
     )

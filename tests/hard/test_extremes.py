@@ -39,7 +39,9 @@ def test_bins(check, bins):
     )
     picture = scene.render(settings(pyramid__bins=bins, photon_pass__photon_count=400_000, gather__rays=256))
     assert picture.stats["pyramid"]["glossy_cells"] > 0
-    check(f"direction bins {bins}", expected=2.0, got=picture.mean, bound=0.02)
+    # One bin holds the mean over the hemisphere, whatever the direction it is read in.
+    bound = 0.03 if bins == "1x1" else 0.01
+    check(f"direction bins {bins}", expected=2.0, got=picture.mean, bound=bound)
 
 
 def test_photons_none(check):

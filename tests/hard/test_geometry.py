@@ -81,13 +81,13 @@ def test_offset_in_the_mesh(check, edge):
     edge(case, [10.0**i for i in range(4, 9)], lambda d: off(at(d)), unit=" m")
 
 
-def with_extra(corners, **more):
+def with_extra(corners, seconds=60.0):
     """A furnace with further triangles (T, 3, 3) of its own material in it."""
     scene = furnace()
     corners = np.asarray(corners, np.float64).reshape(-1, 3)
     shape = (corners, np.arange(len(corners), dtype=np.uint32).reshape(-1, 3))
-    scene.add(shape, glowing(0.5), **more)
-    return scene.render()
+    scene.add(shape, glowing(0.5))
+    return scene.render(seconds=seconds)
 
 
 def slivers(count: int, width: float, length: float = 0.05):
@@ -101,7 +101,7 @@ def slivers(count: int, width: float, length: float = 0.05):
 def test_slivers(check, edge):
     case = "100,000 slivers, 5 cm long, 1 µm wide"
     uniform(check, case, with_extra(slivers(100_000, 1e-6)))
-    long = lambda length: off(with_extra(slivers(20_000, 1e-6, length)))  # noqa: E731
+    long = lambda length: off(with_extra(slivers(20_000, 1e-6, length), 15.0))  # noqa: E731
     edge(case, [0.05, 0.1, 0.2, 0.4, 0.8], long, unit=" m long, by the 20,000")
 
 
@@ -229,7 +229,7 @@ def cloud(count: int):
 
 @pytest.mark.parametrize("count", [1_000, pytest.param(1_000_000, marks=pytest.mark.heavy)])
 def test_instances(check, count):
-    picture = cloud(count).render(settings(photon_pass__photon_count=1_000_000))
+    picture = cloud(count).render(settings(photon_pass__photon_count=1_000_000), 600.0)
     uniform(check, f"{count:,} instances of albedo 1 in a uniform world", picture, 0.7)
 
 

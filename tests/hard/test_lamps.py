@@ -124,7 +124,7 @@ def test_area_lamp_on_a_surface(check, height):
 
 @pytest.mark.parametrize("lift", [1e-3, 1e-6])
 def test_point_lamp_near_a_surface(check, lift):
-    """Half of the light lands right beneath the lamp; a sphere's indirect light is what it is wherever the lamp hangs."""
+    """Half of the light lands right beneath the lamp; a sphere's indirect light does not depend on where it hangs."""
     scene = Scene()
     scene.add(ball(5), diffuse(ALBEDO))
     # Towards the middle of a face, which lies nearer than its corners.

@@ -39,9 +39,13 @@ def test_what_is_written_takes_the_place_of_what_was_there(kept: Path) -> None:
 
 
 def test_a_failure_keeps_what_was_there(kept: Path) -> None:
-    with pytest.raises(ValueError, match="half way"), whole_file(kept) as part:
-        part.write_bytes(b"half")
-        raise ValueError("half way")
+    def write() -> None:
+        with whole_file(kept) as part:
+            part.write_bytes(b"half")
+            raise ValueError("half way")
+
+    with pytest.raises(ValueError, match="half way"):
+        write()
     assert_untouched(kept)
     assert list(kept.parent.iterdir()) == [kept]
 
