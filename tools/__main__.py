@@ -1,4 +1,7 @@
-"""The commands behind the Makefile: `python3 -m tools render | test | hard | fuzz | lint | bench | tables | …`."""
+"""The commands behind the Makefile: `python3 -m tools COMMAND`.
+
+COMMAND is render, test, hard, fuzz, lint, bench, tables, agreement, extension or clean.
+"""
 
 from __future__ import annotations
 
@@ -117,6 +120,12 @@ def tables(options: argparse.Namespace) -> None:
     require([python, "-m", "benchmarks.tables", *options.more])
 
 
+def agreement(options: argparse.Namespace) -> None:
+    """Compares every feature with Cycles and writes `docs/agreement.md`."""
+    python = make_blender(available_bpys(options.bpy)[-1])
+    require([python, "-m", "tests.render.agreement", *options.more])
+
+
 def extension(options: argparse.Namespace) -> None:
     """Builds the Blender extension with the wheels for one Python inside."""
     bpy = available_bpys(options.bpy)[-1]
@@ -134,7 +143,7 @@ def main() -> None:
     """Reads the command line and runs one command."""
     parser = argparse.ArgumentParser(prog="python3 -m tools", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
-    for command in (render, test, hard, fuzz, lint, bench, tables, extension, clean):
+    for command in (render, test, hard, fuzz, lint, bench, tables, agreement, extension, clean):
         subparser = commands.add_parser(command.__name__, help=command.__doc__)
         subparser.set_defaults(run=command)
         subparser.add_argument(

@@ -31,7 +31,36 @@ def camera_record(context: ExportContext) -> dict[str, Any]:
         "window": camera_window(b_camera, resolution, aspect, shift),
         "resolution": list(resolution),
         "clip": [b_camera.clip_start, b_camera.clip_end],
+        "lens": camera_lens(b_object) if b_camera.dof.use_dof else None,
     }
+
+
+def camera_lens(b_object: Any) -> dict[str, Any]:
+    """The core's LensRecord of a camera whose depth of field is on. The f-stop is taken as Cycles does: a camera with
+    parallel rays has an aperture as if its focal length were a metre."""
+    b_camera = b_object.data
+    b_dof = b_camera.dof
+    focal_length = 1.0 if b_camera.type == "ORTHO" else b_camera.lens * 1e-3
+    return {
+        "radius": focal_length / (2.0 * max(b_dof.aperture_fstop, 1e-5)),
+        "blades": b_dof.aperture_blades,
+        "rotation": b_dof.aperture_rotation,
+        "ratio": b_dof.aperture_ratio,
+        "focus_distance": max(_focus_distance(b_object), 1e-5),
+    }
+
+
+def _focus_distance(b_object: Any) -> float:
+    """Depth of the plane of focus (m): of the object in focus, or of its bone, along the view axis."""
+    b_dof = b_object.data.dof
+    b_focus = b_dof.focus_object
+    if b_focus is None:
+        return float(b_dof.focus_distance)
+    place = b_focus.matrix_world
+    if b_focus.type == "ARMATURE" and b_dof.focus_subtarget in b_focus.pose.bones:
+        place = place @ b_focus.pose.bones[b_dof.focus_subtarget].matrix
+    axis = b_object.matrix_world.to_3x3().normalized().col[2]
+    return float(abs(axis.dot(b_object.matrix_world.translation - place.translation)))
 
 
 def camera_window(
@@ -81,5 +110,3 @@ def _report_unsupported(name: str, b_camera: Any, context: ExportContext) -> Non
     if b_camera.type not in ("PERSP", "ORTHO"):
         kind = b_camera.bl_rna.properties["type"].enum_items[b_camera.type].name
         context.log.add(name, f"a {kind.lower()} camera is not supported yet; a perspective view is rendered")
-    if b_camera.dof.use_dof:
-        context.log.add(name, "depth of field is not supported yet; everything is sharp")

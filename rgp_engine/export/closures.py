@@ -38,7 +38,6 @@ _LEFT_OUT = (
     "Thin Film Thickness",
     "Thin Wall",
 )
-_NORMALS = ("Normal", "Coat Normal", "Clear Coat Normal")
 
 
 def closures(folder: Folder, entry: Input) -> tuple[list[WeightedClosure], list[dict[str, Any]]]:
@@ -73,6 +72,7 @@ def _parts(folder: Folder, entry: Input, weight: float | Varying) -> list[tuple[
         first = _parts(folder, source.input("Shader"), weight)
         return first + _parts(folder, source.input("Shader_001"), weight)
     _report_left_out(folder, source)
+    folder.note_normals(source)
     record, share = _closure(folder, source)
     return [(folder.product(share, weight), record)] if record else []
 
@@ -107,12 +107,6 @@ def _report_left_out(folder: Folder, source: Output) -> None:
         entry = source.find(identifier)
         if entry is not None and folder.constant_value(entry) != 0.0:
             folder.report_node(source.b_node, f"{identifier} is not supported yet; left out")
-    for identifier in _NORMALS:
-        entry = source.find(identifier)
-        if entry is None or isinstance(origin(entry), Input) or folder.take_normal(entry):
-            continue
-        message = f"{identifier} is not supported yet; the surface's own is used instead"
-        folder.report_node(source.b_node, message)
 
 
 def _diffuse(folder: Folder, source: Output) -> Closure:

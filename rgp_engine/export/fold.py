@@ -72,9 +72,8 @@ class Folder:
         """Clamped to 0 and 1."""
         return clamp(_constant(a))
 
-    def take_normal(self, _entry: Input) -> bool:
-        """Makes what feeds an input the shading normal; False where that is not possible."""
-        return False
+    def note_normals(self, source: Output) -> None:
+        """Remembers the normal a shader asks for: only compilers have use for one."""
 
     def typical(self, source: Output) -> Value:
         """A value that stands for a node's output."""
@@ -110,7 +109,11 @@ class Folder:
             return _default(output.b_socket)
         compute = _NODES.get(b_node.type)
         if compute is not None:
-            return compute(self, output)
+            try:
+                return compute(self, output)
+            except (ValueError, OverflowError):
+                # Beyond all numbers, where the operation has no result.
+                return converted(0.0, "VALUE", output.b_socket.type)
         average = texture_average(b_node, output.b_socket, lambda name: self.fold(output.input(name)))
         if average is None:
             raise UnfoldableError
@@ -249,9 +252,8 @@ def _map_range(folder: Folder, output: Output) -> Value:
         raise UnfoldableError
     names = ("Value", "From Min", "From Max", "To Min", "To Max")
     value, from_min, from_max, to_min, to_max = (_number(folder, output, name) for name in names)
-    if from_min == from_max:
-        return 0.0
-    mapped = arithmetic.lerp(to_min, to_max, (value - from_min) / (from_max - from_min))
+    span = from_max - from_min
+    mapped = arithmetic.lerp(to_min, to_max, (value - from_min) / span) if span else 0.0
     return clamp(mapped, min(to_min, to_max), max(to_min, to_max)) if b_node.clamp else mapped
 
 

@@ -1,4 +1,4 @@
-"""The average of an image, which stands for it where one value is asked for."""
+"""The pixels of images, and their average, which stands for an image where one value is asked for."""
 
 from typing import Any
 
@@ -7,11 +7,23 @@ import numpy.typing as npt
 
 from .arithmetic import Color
 
-MOST_PIXELS = 1 << 26
-"""Larger images are not read: 8192 x 8192."""
+# Larger images are not read: 8192 x 8192.
+_MOST_PIXELS = 1 << 26
 # Rows and columns that are looked at, evenly spread.
 _MAX_SAMPLES = 256
 _ENCODED = ("sRGB", "Filmic sRGB")
+
+
+def pixels_of(b_image: Any) -> npt.NDArray[np.float32] | None:
+    """Pixels of an image (height, width, channels), rows from the bottom, as the file has them; None when it is missing
+    or very large."""
+    width, height = b_image.size
+    channels = b_image.channels
+    if not (width and height and channels) or width * height > _MOST_PIXELS:
+        return None
+    pixels = np.empty(width * height * channels, np.float32)
+    b_image.pixels.foreach_get(pixels)
+    return pixels.reshape(height, width, channels)
 
 
 def average(b_image: Any, is_sphere: bool = False) -> tuple[Color, float] | None:
@@ -19,14 +31,12 @@ def average(b_image: Any, is_sphere: bool = False) -> tuple[Color, float] | None
 
     With `is_sphere` rows count by the solid angle they cover in an equirectangular panorama.
     """
-    width, height = b_image.size
-    channels = b_image.channels
-    if not (width and height and channels) or width * height > MOST_PIXELS:
+    pixels = pixels_of(b_image)
+    if pixels is None:
         return None
-    pixels = np.empty(width * height * channels, np.float32)
-    b_image.pixels.foreach_get(pixels)
+    height, width, channels = pixels.shape
     step_y, step_x = -(-height // _MAX_SAMPLES), -(-width // _MAX_SAMPLES)
-    samples = pixels.reshape(height, width, channels)[step_y // 2 :: step_y, step_x // 2 :: step_x]
+    samples = pixels[step_y // 2 :: step_y, step_x // 2 :: step_x]
     if not b_image.is_float and b_image.colorspace_settings.name in _ENCODED:
         samples[..., :3] = _linear(samples[..., :3])
     rows = samples.mean(axis=1, dtype=np.float64)

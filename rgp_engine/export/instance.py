@@ -112,10 +112,7 @@ def _slot_materials(b_object: Any) -> list[Any]:
 def _report_unsupported(context: ExportContext, b_instance: Any) -> None:
     """What the object asks for beyond its triangles."""
     b_object, b_owner = b_instance.object, owner(b_instance)
-    b_view_layer = context.b_depsgraph.view_layer_eval
     log = context.log
-    if b_object.is_holdout or b_owner.holdout_get(view_layer=b_view_layer):
-        log.add(b_owner.name, "holdouts are not supported yet; rendered as it is")
     if b_object.is_shadow_catcher:
         log.add(b_owner.name, "shadow catchers are not supported yet; rendered as it is")
     for b_system in () if b_instance.is_instance else b_object.particle_systems:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from .closures import WeightedClosure, closures
+from .closures import closures
 from .compiler import MOST_INSTRUCTIONS, Compiler, displace
 from .context import ExportContext
 from .nodes import Input, Output, node_tree, origin, output_node
@@ -17,7 +17,7 @@ def material_index(context: ExportContext, b_material: Any | None) -> int:
         name = "(no material)" if b_material is None else b_material.name
         compiler = Compiler(context, name)
         record = _default_record() if b_material is None else _record_or_default(compiler, b_material)
-        context.emits |= any(map(_emits, record["closures"]))
+        context.emits |= emits(record)
         index = context.builder.add_material(record)
         context.materials[key] = index
         context.layers_read[index] = frozenset(compiler.attributes)
@@ -54,6 +54,7 @@ def material_record(compiler: Compiler, b_material: Any) -> dict[str, Any]:
     elif compiler.normal is not None and getattr(b_material, "displacement_method", "BUMP") != "BUMP":
         compiler.report("its Displacement is rendered as a bump")
     records, outputs = closures(compiler, Input(b_output.inputs["Surface"], ()))
+    compiler.choose_normal()
     record: dict[str, Any] = {"name": name, "closures": records}
     if not outputs and compiler.normal is None:
         return record
@@ -70,8 +71,18 @@ def _default_record() -> dict[str, Any]:
     return {"name": "(no material)", "closures": [_DEFAULT]}
 
 
-def _emits(weighted: WeightedClosure) -> bool:
-    closure = weighted["closure"]
-    if closure["kind"] == "principled":
-        return any(closure.get("emission_color", ())) and closure.get("emission_strength", 0) > 0
-    return closure["kind"] == "emission" and any(closure["radiance"])
+def emits(record: dict[str, Any]) -> bool:
+    """True for a material that may give light somewhere: what its program computes may be anything."""
+    outputs = record.get("program", {}).get("outputs", ())
+    varying = {(output["closure"], output["input"]) for output in outputs}
+
+    def is_lit(index: int, name: str, value: Any) -> bool:
+        return (index, name) in varying or (any(value) if isinstance(value, list) else value > 0.0)
+
+    factors = {"emission": ("radiance",), "principled": ("emission_color", "emission_strength")}
+    for index, weighted in enumerate(record["closures"]):
+        closure = weighted["closure"]
+        names = factors.get(closure["kind"], ())
+        if names and all(is_lit(index, name, closure.get(name, 0.0)) for name in names):
+            return True
+    return False

@@ -5,6 +5,7 @@ from typing import Any
 from .context import ExportContext
 
 CAMERA, DIFFUSE, GLOSSY, TRANSMISSION, SHADOW = 1, 2, 4, 8, 16
+HOLDOUT = 64
 ALL = CAMERA | DIFFUSE | GLOSSY | TRANSMISSION | SHADOW
 
 _FLAGS = (
@@ -17,13 +18,16 @@ _FLAGS = (
 
 
 def instance_bits(context: ExportContext, b_instance: Any) -> int:
-    """The core's visibility bits of an instance: its object's and its instancer's together."""
+    """The core's visibility bits of an instance: its object's and its instancer's together, and if it is a hole."""
     bits = object_bits(b_instance.object)
     b_owner = owner(b_instance)
     if b_owner != b_instance.object:
         bits &= object_bits(b_owner)
-    if b_owner.indirect_only_get(view_layer=context.b_depsgraph.view_layer_eval):
+    b_view_layer = context.b_depsgraph.view_layer_eval
+    if b_owner.indirect_only_get(view_layer=b_view_layer):
         bits &= ~CAMERA
+    if b_instance.object.is_holdout or b_owner.holdout_get(view_layer=b_view_layer):
+        bits |= HOLDOUT if bits & CAMERA else 0
     return bits
 
 

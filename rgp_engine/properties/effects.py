@@ -45,3 +45,7 @@ class RGPEffectSettings(bpy.types.PropertyGroup):
         "Alpha Transparency",
         "Light straight through transparent surfaces; Off makes them opaque",
     )
+    depth_of_field: _switch(
+        "Depth of Field",
+        "Blur of what is not in focus, where the camera's depth of field is on; Off makes everything sharp",
+    )

@@ -27,6 +27,14 @@ class RGPFilmSettings(bpy.types.PropertyGroup):
         max=10.0,
         subtype="PIXEL",
     )
+    exposure: bpy.props.FloatProperty(
+        name="Exposure",
+        description="Factor of all light in the picture, as Cycles' exposure",
+        default=1.0,
+        min=0.0,
+        max=1e6,
+        soft_max=10.0,
+    )
     tile_size: bpy.props.IntProperty(
         name="Tile Size",
         description="Edge of the tiles the picture is cut into; changes nothing in the picture",

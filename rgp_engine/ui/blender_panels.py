@@ -9,10 +9,12 @@ from ..properties import ENGINE_ID
 
 _GENERAL_ENGINE = "BLENDER_RENDER"
 
+# Of Blender's own engines, and the same for this one.
+_INCLUDED = {"DATA_PT_camera_dof", "DATA_PT_camera_dof_aperture"}
+
 # Panels for every engine that would show what this one does not render, or that have a twin here.
 _EXCLUDED = {
     "DATA_PT_area",
-    "DATA_PT_camera_dof",
     "DATA_PT_camera_stereoscopy",
     "DATA_PT_cone",
     "DATA_PT_distance",
@@ -48,9 +50,9 @@ def hide() -> None:
 
 def _panels() -> Iterator[Any]:
     for b_panel in bpy.types.Panel.__subclasses__():
-        if _GENERAL_ENGINE not in getattr(b_panel, "COMPAT_ENGINES", ()):
-            continue
         # The node editor's sidebar has twins of some, which share their set of engines.
         name = b_panel.__name__.removeprefix("NODE_")
+        if name not in _INCLUDED and _GENERAL_ENGINE not in getattr(b_panel, "COMPAT_ENGINES", ()):
+            continue
         if name not in _EXCLUDED and not name.startswith(_FREESTYLE):
             yield b_panel

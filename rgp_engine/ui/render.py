@@ -67,7 +67,7 @@ class RGP_PT_film(ClosedEnginePanel, Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        draw_settings(self.layout, context.scene.rgp.film, "filter", "filter_width")
+        draw_settings(self.layout, context.scene.rgp.film, "exposure", "filter", "filter_width")
         self.layout.prop(context.scene.render, "film_transparent", text="Transparent")
 
 

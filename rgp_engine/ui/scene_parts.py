@@ -49,6 +49,7 @@ class RGP_PT_object_visibility(ClosedEnginePanel, Panel):
         column.prop(b_object, "visible_transmission", text="Transmission")
         if b_object.type != "LIGHT":
             column.prop(b_object, "visible_shadow", text="Shadow")
+            self.layout.prop(b_object, "is_holdout")
 
 
 class RGP_PT_view_layer_passes(EnginePanel, Panel):

@@ -113,7 +113,32 @@ def test_panorama_falls_back_and_says_so(scene, export, problems):
     assert any("panoramic camera is not supported yet" in text for text in problems())
 
 
-def test_depth_of_field_is_reported(scene, export, problems):
-    build.add_camera().data.dof.use_dof = True
-    export()
-    assert "Camera: depth of field is not supported yet; everything is sharp" in problems()
+def test_lens(scene, export):
+    b_camera = build.add_camera().data
+    assert export().camera["lens"] is None
+    b_dof = b_camera.dof
+    b_dof.use_dof, b_dof.aperture_fstop, b_dof.focus_distance = True, 2.0, 3.5
+    b_dof.aperture_blades, b_dof.aperture_rotation, b_dof.aperture_ratio = 6, 0.25, 1.5
+    b_camera.lens = 80.0
+    shape = {"blades": 6, "rotation": 0.25, "ratio": 1.5}
+    assert export().camera["lens"] == pytest.approx({"radius": 0.02, "focus_distance": 3.5, **shape})
+    b_camera.type = "ORTHO"
+    assert export().camera["lens"]["radius"] == pytest.approx(0.25)
+
+
+def test_focus_on_an_object_or_a_bone(scene, export):
+    b_object = build.add_camera((0.0, 0.0, 10.0))
+    b_object.rotation_euler, b_object.scale = (0.5, 0.0, 0.0), (2.0, 2.0, 2.0)
+    b_dof = b_object.data.dof
+    b_dof.use_dof = True
+    b_dof.focus_object = build.add_object("Focus", None, (1.0, 0.0, 4.0))
+    # Depth along the view axis: neither the distance, nor scaled by the camera.
+    assert export().camera["lens"]["focus_distance"] == pytest.approx(6.0 * math.cos(0.5))
+    b_armature = build.add_object("Armature", bpy.data.armatures.new("Armature"), (0.0, 0.0, 1.0))
+    bpy.context.view_layer.objects.active = b_armature
+    bpy.ops.object.mode_set(mode="EDIT")
+    b_bone = b_armature.data.edit_bones.new("Bone")
+    b_bone.head, b_bone.tail = (0.0, 0.0, 2.0), (0.0, 0.0, 3.0)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    b_dof.focus_object, b_dof.focus_subtarget = b_armature, "Bone"
+    assert export().camera["lens"]["focus_distance"] == pytest.approx(7.0 * math.cos(0.5))

@@ -6,7 +6,7 @@ import pytest
 
 from tests.blender import build
 
-ALL = 31
+ALL, HOLDOUT = 31, 64
 
 
 def names(recording):
@@ -354,10 +354,27 @@ def test_curves_objects_are_reported(scene, export, problems):
     assert any(text.startswith("Hair: objects of type") for text in problems())
 
 
-def test_holdout_and_shadow_catcher_are_reported(scene, export, problems):
+@pytest.mark.parametrize("of_collection", [False, True])
+def test_holdout_is_a_hole_for_the_camera(scene, export, of_collection):
     build.add_camera()
     b_object = build.add_object("Quad", build.quad())
-    b_object.is_holdout = b_object.is_shadow_catcher = True
+    b_collection = bpy.data.collections.new("Holes")
+    scene.collection.children.link(b_collection)
+    b_collection.objects.link(b_object)
+    scene.collection.objects.unlink(b_object)
+    if of_collection:
+        bpy.context.view_layer.layer_collection.children["Holes"].holdout = True
+    else:
+        b_object.is_holdout = True
+    build.add_object("Other", build.quad())
+    exported = export()
+    assert [record["visibility"] for record in exported.objects_of("Quad")] == [ALL | HOLDOUT]
+    assert [record["visibility"] for record in exported.objects_of("Other")] == [ALL]
+
+
+def test_shadow_catcher_is_reported(scene, export, problems):
+    build.add_camera()
+    b_object = build.add_object("Quad", build.quad())
+    b_object.is_shadow_catcher = True
     export()
-    assert "Quad: holdouts are not supported yet; rendered as it is" in problems()
     assert "Quad: shadow catchers are not supported yet; rendered as it is" in problems()

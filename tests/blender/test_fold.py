@@ -187,6 +187,36 @@ def test_range_nodes(tree, fold):
     assert fold(b_map, "Result", into="value") == pytest.approx(0.4)
 
 
+def test_a_range_of_nothing_gives_nothing(tree, fold):
+    b_map = tree.nodes.new("ShaderNodeMapRange")
+    for identifier, value in (("From Min", 2.0), ("From Max", 2.0), ("To Min", 0.2), ("To Max", 0.6)):
+        build.socket(b_map.inputs, identifier).default_value = value
+    b_map.clamp = False
+    assert fold(b_map, "Result", into="value") == 0.0
+    b_map.clamp = True
+    assert fold(b_map, "Result", into="value") == pytest.approx(0.2)
+
+
+def test_what_has_no_result_is_nothing(tree, fold):
+    b_huge = build.node(tree, "ShaderNodeMath")
+    b_huge.operation = "MULTIPLY"
+    b_huge.inputs[0].default_value = b_huge.inputs[1].default_value = 1e38
+    b_beyond = b_huge
+    for _ in range(9):  # past what a double holds
+        b_square = build.node(tree, "ShaderNodeMath")
+        b_square.operation = "MULTIPLY"
+        tree.links.new(b_beyond.outputs[0], b_square.inputs[0])
+        tree.links.new(b_beyond.outputs[0], b_square.inputs[1])
+        b_beyond = b_square
+    b_floor = build.node(tree, "ShaderNodeMath")
+    b_floor.operation = "FLOOR"
+    tree.links.new(b_beyond.outputs[0], b_floor.inputs[0])
+    assert fold(b_floor, into="value") == 0.0
+    b_gamma = build.node(tree, "ShaderNodeGamma", Gamma=1000.0)
+    tree.links.new(b_huge.outputs[0], b_gamma.inputs["Color"])
+    assert fold(b_gamma) == (0.0, 0.0, 0.0)
+
+
 def test_color_ramp_and_curves_are_blenders_own(tree, fold):
     b_ramp = tree.nodes.new("ShaderNodeValToRGB")
     b_ramp.inputs[0].default_value = 0.3

@@ -47,11 +47,13 @@ def test_blenders_panels_that_make_sense_are_shown():
     assert {
         "DATA_PT_lens",
         "DATA_PT_camera",
+        "DATA_PT_camera_dof",
+        "DATA_PT_camera_dof_aperture",
         "RENDER_PT_format",
         "RENDER_PT_output",
         "WORLD_PT_context_world",
     } <= panels
-    assert not {"DATA_PT_light", "DATA_PT_camera_dof", "OBJECT_PT_visibility"} & panels
+    assert not {"DATA_PT_light", "OBJECT_PT_visibility"} & panels
 
 
 def test_the_package_does_not_need_blender_to_be_imported():

@@ -151,7 +151,7 @@ def test_one_problem_is_told_in_full_and_several_are_counted():
 
 
 def test_problems_end_in_one_warning(scene, recorded, calls):
-    build.add_camera().data.dof.use_dof = True
+    build.add_camera().data.type = "PANO"
     bpy.ops.render.render()
     ((args, _),) = of(calls, "report")
     assert args[0] == {"WARNING"}

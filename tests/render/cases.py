@@ -183,28 +183,29 @@ def build(case: str) -> bpy.types.Scene:
     """The scene of a case in `CASES`, in place of whatever Blender holds."""
     kind, name = case.split("/", 1)
     scene = common.start_empty_file()
-    _add_floor_and_camera()
+    add_floor_and_camera()
     if kind == "lamp":
-        _add_ball(shader("BsdfDiffuse", Color=BLUE))
-        _add_light(name)
+        add_ball(shader("BsdfDiffuse", Color=BLUE))
+        add_light(name)
     else:
         material, light = name.split("/")
-        _add_ball(MATERIALS[material])
+        add_ball(MATERIALS[material])
         if light == "world":
-            _add_light("world")
+            add_light("world")
         else:
-            _add_lamp(MATERIAL_LAMP)
+            add_lamp(MATERIAL_LAMP)
     return scene
 
 
-def _add_floor_and_camera() -> None:
+def add_floor_and_camera() -> None:
+    """A floor of 6 m, and the camera."""
     side = 3.0
     floor = [(-side, -side, 0.0), (side, -side, 0.0), (side, side, 0.0), (-side, side, 0.0)]
     common.add_polygons("Floor", [floor], [common.diffuse_material("Floor", FLOOR_ALBEDO)])
     common.add_camera(CAMERA, (math.radians(66.0), 0.0, 0.0), math.radians(40.0), RESOLUTION)
 
 
-def _add_ball(surface: Surface) -> None:
+def add_ball(surface: Surface) -> None:
     """A smooth sphere that stands on the floor."""
     bpy.ops.mesh.primitive_uv_sphere_add(
         segments=96, ring_count=48, radius=BALL_RADIUS, location=(0.0, 0.0, BALL_RADIUS + 0.001)
@@ -216,13 +217,14 @@ def _add_ball(surface: Surface) -> None:
     ball.data.materials.append(material)
 
 
-def _add_light(name: str) -> None:
+def add_light(name: str) -> None:
+    """A light of `LAMP_CASES`."""
     if name == "world":
         _add_world(0.5)
     elif name == "emissive_quad":
         _add_emissive_quad()
     else:
-        _add_lamp(LAMPS[name])
+        add_lamp(LAMPS[name])
 
 
 def _add_world(strength: float) -> None:
@@ -231,14 +233,15 @@ def _add_world(strength: float) -> None:
     background.inputs["Strength"].default_value = strength
 
 
-def _add_lamp(lamp: Lamp) -> None:
+def add_lamp(lamp: Lamp) -> None:
+    """A lamp in its place."""
     light = bpy.data.lights.new("Lamp", lamp.kind)
     light.energy = lamp.energy
     light.color = LAMP_COLOR
     for setting, value in lamp.settings.items():
         setattr(light, setting, value)
     thing = common.add_object("Lamp", light)
-    _aim(thing, *lamp.where)
+    aim(thing, *lamp.where)
     thing.scale = lamp.scale
     if lamp.where != ABOVE:
         thing.visible_camera = True
@@ -251,10 +254,10 @@ def _add_emissive_quad() -> None:
     tree.links.new(shader("Emission", Color=LAMP_COLOR, Strength=40.0)(tree), surface)
     corners = [(-0.45, -0.45, 0.0), (0.45, -0.45, 0.0), (0.45, 0.45, 0.0), (-0.45, 0.45, 0.0)]
     quad = common.add_polygons("Quad", [corners], [material])
-    _aim(quad, *ABOVE)
+    aim(quad, *ABOVE)
 
 
-def _aim(thing: bpy.types.Object, place: common.Point, target: common.Point) -> None:
+def aim(thing: bpy.types.Object, place: common.Point, target: common.Point) -> None:
     """Puts a lamp at a place, its -Z towards the target."""
     thing.location = place
     thing.rotation_euler = (Vector(target) - Vector(place)).to_track_quat("-Z", "Y").to_euler()

@@ -44,11 +44,8 @@ CASE_ERROR = 1e-3
 
 
 def use_cycles(scene: bpy.types.Scene, samples: int, seed: int) -> None:
-    """Clean Cycles on one thread, with samples that are independent from pixel to pixel and from seed to seed."""
-    common.set_clean_settings(scene, samples)
-    scene.cycles.seed = seed
-    scene.cycles.sampling_pattern = "TABULATED_SOBOL"
-    scene.cycles.min_light_bounces = 3
+    """Clean Cycles on one thread."""
+    pictures.use_cycles(scene, samples, seed)
     scene.render.threads_mode = "FIXED"
     scene.render.threads = 1
 

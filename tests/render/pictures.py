@@ -13,11 +13,20 @@ import numpy as np
 import numpy.typing as npt
 import OpenEXR
 
+from scenes import common
+
 Picture = npt.NDArray[np.float64]
 
 
 def render(scene: bpy.types.Scene, passes: Iterable[str] = ("Combined",)) -> dict[str, Picture]:
     """Renders the scene with its own engine and settings; pictures by the name of the pass."""
+    channels = render_channels(scene)
+    layer = scene.view_layers[0].name
+    return {name: rgb(channels, f"{layer}.{name}") for name in passes}
+
+
+def render_channels(scene: bpy.types.Scene) -> dict[str, npt.NDArray[Any]]:
+    """Renders the scene with its own engine and settings; every channel of the file by name, (height, width)."""
     output = scene.render.image_settings
     if hasattr(output, "media_type"):  # Blender 5.0 and later
         output.media_type = "MULTI_LAYER_IMAGE"
@@ -27,9 +36,7 @@ def render(scene: bpy.types.Scene, passes: Iterable[str] = ("Combined",)) -> dic
         path = Path(folder) / "picture.exr"
         scene.render.filepath = str(path)
         bpy.ops.render.render(write_still=True)
-        channels = read_channels(path)
-    layer = scene.view_layers[0].name
-    return {name: rgb(channels, f"{layer}.{name}") for name in passes}
+        return read_channels(path)
 
 
 def use_rgp(scene: bpy.types.Scene, settings: Mapping[str, Any]) -> None:
@@ -38,6 +45,21 @@ def use_rgp(scene: bpy.types.Scene, settings: Mapping[str, Any]) -> None:
     for name, value in settings.items():
         group, setting = name.split(".")
         setattr(getattr(scene.rgp, group), setting, value)
+
+
+def use_cycles(scene: bpy.types.Scene, samples: int, seed: int) -> None:
+    """Makes a clean Cycles the scene's engine, with samples that are independent from pixel to pixel and from seed to
+    seed."""
+    common.set_clean_settings(scene, samples)
+    scene.cycles.seed = seed
+    scene.cycles.sampling_pattern = "TABULATED_SOBOL"
+    scene.cycles.min_light_bounces = 3
+
+
+def use_box_filter(scene: bpy.types.Scene) -> None:
+    """Makes each pixel its own square, for both engines; `use_cycles` undoes it."""
+    scene.rgp.film.filter, scene.rgp.film.filter_width = "box", 1.0
+    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 1.0
 
 
 def read_channels(path: Path) -> dict[str, npt.NDArray[Any]]:

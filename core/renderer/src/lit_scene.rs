@@ -1,5 +1,6 @@
 //! The scene as the passes see it: what is met, how it scatters, what lights it, what is called for.
 
+mod emitters;
 mod hit_point;
 
 use glam::{DVec3, Vec3};

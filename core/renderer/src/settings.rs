@@ -103,6 +103,8 @@ pub struct FilmSettings {
     pub filter: PixelFilter,
     /// Its width (pixels) as Blender counts it: a box is that wide, Blackman-Harris reaches that far to either side.
     pub filter_width: f32,
+    /// Factor of all light in the picture.
+    pub exposure: f32,
     /// Edge of a tile (pixels), rounded up to a multiple of 4.
     pub tile_size: u32,
 }
@@ -140,6 +142,8 @@ pub struct EffectSettings {
     pub emissive_meshes: Switch,
     /// Surfaces that let light straight through.
     pub alpha_transparency: Switch,
+    /// Blur of what is not in focus.
+    pub depth_of_field: Switch,
 }
 
 /// Knobs of the machine.
@@ -203,7 +207,7 @@ impl Default for GatherSettings {
 
 impl Default for FilmSettings {
     fn default() -> Self {
-        Self { filter: PixelFilter::BlackmanHarris, filter_width: 1.5, tile_size: 64 }
+        Self { filter: PixelFilter::BlackmanHarris, filter_width: 1.5, exposure: 1.0, tile_size: 64 }
     }
 }
 
@@ -305,8 +309,10 @@ pub const KNOBS: &[Knob] = &[
     knob("effects", "environment_light", SWITCH, "", "Light of the world; Off makes the world black"),
     knob("effects", "emissive_meshes", SWITCH, "", "Light of emissive surfaces; Off makes them dark"),
     knob("effects", "alpha_transparency", SWITCH, "", "Light straight through transparent surfaces; Off makes them opaque"),
+    knob("effects", "depth_of_field", SWITCH, "", "Blur of what is not in focus, where the camera's depth of field is on; Off makes everything sharp"),
     knob("film", "filter", Kind::Enum { choices: &["blackman_harris", "box"] }, "", "Pixel filter"),
     knob("film", "filter_width", Kind::Float { minimum: 0.1, maximum: 10.0 }, "pixels", "Width of the pixel filter as in Cycles: a box is that wide, Blackman-Harris reaches that far to either side"),
+    knob("film", "exposure", Kind::Float { minimum: 0.0, maximum: 1e6 }, "", "Factor of all light in the picture, as Cycles' exposure"),
     knob("film", "tile_size", int(4, 4096), "pixels", "Edge of the tiles the picture is cut into; changes nothing in the picture"),
     knob("render", "threads", int(0, 1024), "threads", "Threads to use; 0 takes all; changes nothing in the picture"),
     knob("render", "seed", int(0, 2_147_483_647), "", "Another seed gives other noise"),

@@ -124,6 +124,18 @@ fn objects_with_impossible_transforms() {
 }
 
 #[test]
+fn spots_with_a_flat_cone() {
+    for flat in [DVec3::new(0.0, 1.0, 1.0), DVec3::new(1.0, 0.0, 1.0), DVec3::new(1.0, 1.0, 0.0)] {
+        let mut bad = Room::default().builder();
+        let spot = LampShape::Spot { radius: 0.0, soft_falloff: true, cone_angle: 0.8, blend: 0.2 };
+        let mut record = lamp(spot, 10.0, DVec3::ZERO);
+        record.world_from_lamp = rows(DMat4::from_scale(flat));
+        bad.add_lamp(record);
+        assert_harmless(Room::default().builder(), bad, "lamp", "scale is zero", 1);
+    }
+}
+
+#[test]
 fn mesh_without_triangles() {
     let mut bad = Room::default().builder();
     place(&mut bad, MeshArrays::default(), &[diffuse(0.5)]);

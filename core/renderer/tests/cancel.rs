@@ -2,6 +2,7 @@
 
 mod support;
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use rgp_renderer::error::RenderError;
@@ -12,19 +13,29 @@ use rgp_renderer::settings::RenderSettings;
 use rgp_renderer::stats::Stats;
 use support::{Room, library, settings};
 
+/// Tells that a render is over, also by a panic.
+struct Over<'a>(&'a AtomicBool);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
 /// Renders a picture that takes minutes, asks to stop as soon as `now` says so, and checks what it left behind.
 fn stop(settings: &RenderSettings, now: impl Fn(&Progress) -> bool + Send + Sync) -> Film {
     let scene = Room { pixels: 256, ..Room::default() }.builder().finish().expect("a scene");
     let film = Film::new(256, 256, &settings.film);
-    let progress = Progress::default();
+    let (progress, over) = (Progress::default(), AtomicBool::new(false));
     let (result, asked, ended) = std::thread::scope(|scope| {
         let watcher = scope.spawn(|| {
-            while !now(&progress) {
+            while !now(&progress) && !over.load(Ordering::Relaxed) {
                 std::thread::sleep(Duration::from_millis(1));
             }
             progress.cancel();
             Instant::now()
         });
+        let _over = Over(&over);
         let result = render(&scene, settings, library(), &film, &progress, &mut Stats::default());
         (result, watcher.join().expect("the watcher ends"), Instant::now())
     });

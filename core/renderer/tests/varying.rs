@@ -5,7 +5,7 @@ mod support;
 use glam::{DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::scene::record::{ClosureRecord, Input, MaterialRecord, OutputRecord, ProgramRecord};
-use rgp_renderer::scene::{CornerLayer, SceneBuilder};
+use rgp_renderer::scene::{CornerLayer, MeshArrays, SceneBuilder};
 use rgp_renderer::shader::{
     Aside, Encoding, Extension, Instruction, Interpolation, Pixels, Quantity, Texture, VectorFunction,
 };
@@ -71,27 +71,46 @@ fn a_program_of_constants_changes_no_share() {
     same_picture(constant, varying);
 }
 
-/// A square with texture coordinates from (0, 0) to (1, 1), and a material of 2 x 2 albedos.
-fn textured_floor(builder: &mut SceneBuilder, albedos: [f32; 4], interpolation: Interpolation) {
-    let texels = albedos.map(|albedo| [albedo, albedo, albedo, 1.0]).to_vec();
-    let texture = Texture::new([2, 2], Pixels::Floats(texels), Encoding::Linear).expect("four texels");
+/// 2 x 2 texels.
+fn four_texels(grays: [f32; 4]) -> Texture {
+    let texels = grays.map(|gray| [gray, gray, gray, 1.0]).to_vec();
+    Texture::new([2, 2], Pixels::Floats(texels), Encoding::Linear).expect("four texels")
+}
+
+/// A program that sets one input of the first closure to a texture.
+fn texture_program(
+    builder: &mut SceneBuilder,
+    texture: Texture,
+    interpolation: Interpolation,
+    input: Input,
+) -> Option<ProgramRecord> {
     let texture = builder.add_texture(texture) as u32;
-    let mut record = diffuse(0.5);
     let extension = Extension::Repeat;
-    record.program = Some(ProgramRecord {
+    Some(ProgramRecord {
         instructions: vec![
             Instruction::Attribute { attribute: 3, aside: Aside::Here },
             Instruction::Image { texture, vector: 0, extension, interpolation, unassociate: false },
         ],
-        outputs: vec![OutputRecord { closure: 0, input: Input::Color, register: 1 }],
+        outputs: vec![OutputRecord { closure: 0, input, register: 1 }],
         normal: None,
-    });
-    let mut mesh = floor(1.0, 0.0);
-    let uv = |corner: Vec3| [(corner.x + 1.0) * 0.5, (corner.y + 1.0) * 0.5];
+    })
+}
+
+/// A square in the plane z, with texture coordinates from (0, 0) to (1, 1).
+fn square_with_coordinates(half: f32, z: f32) -> MeshArrays {
+    let mut mesh = floor(half, z);
+    let uv = |corner: Vec3| [(corner.x / half + 1.0) * 0.5, (corner.y / half + 1.0) * 0.5];
     let corner = |&v: &u32| uv(Vec3::from(mesh.positions[v as usize]));
     let values = mesh.triangles.iter().flatten().flat_map(corner).collect();
     mesh.layers = vec![CornerLayer { attribute: 3, channels: 2, values }];
-    place(builder, mesh, &[record]);
+    mesh
+}
+
+/// A square with texture coordinates from (0, 0) to (1, 1), and a material of 2 x 2 albedos.
+fn textured_floor(builder: &mut SceneBuilder, albedos: [f32; 4], interpolation: Interpolation) {
+    let mut record = diffuse(0.5);
+    record.program = texture_program(builder, four_texels(albedos), interpolation, Input::Color);
+    place(builder, square_with_coordinates(1.0, 0.0), &[record]);
 }
 
 /// Under an even sky a surface is as bright as its albedo.
@@ -164,4 +183,69 @@ fn what_may_emit_is_a_light() {
     assert!(mean(&picture.radiance()) > 0.1, "the floor is lit");
     let called_for = |name| picture.stats.effects.iter().any(|e| e.name == name && e.called_for);
     assert!(called_for("emissive_meshes") && called_for("direct_light"));
+}
+
+/// A panel above a floor and below a ceiling, its left half bright, its right half dark: one square with a texture of
+/// emission, or two rectangles. Mean light of the left and the right half of the floor: direct, indirect.
+fn below_a_panel(is_textured: bool) -> [[f64; 2]; 2] {
+    let radiances = [8.0, 1.0];
+    let mut builder = SceneBuilder::default();
+    if is_textured {
+        let typical = ClosureRecord::Emission { radiance: Rgb::splat(4.5) };
+        let mut record = material(&[typical, ClosureRecord::Diffuse { color: Rgb::splat(0.5) }]);
+        let [bright, dark] = radiances;
+        let texels = four_texels([bright, dark, bright, dark]);
+        record.program = texture_program(&mut builder, texels, Interpolation::Closest, Input::Radiance);
+        place(&mut builder, square_with_coordinates(0.5, 0.3), &[record]);
+    } else {
+        for (i, radiance) in radiances.into_iter().enumerate() {
+            let left = i as f32 * 0.5 - 0.5;
+            let corner = |x: f32, y: f32| Vec3::new(left + x, y, 0.3);
+            let half = quad([corner(0.0, -0.5), corner(0.5, -0.5), corner(0.5, 0.5), corner(0.0, 0.5)]);
+            place(&mut builder, half, &[emitter(0.5, radiance)]);
+        }
+    }
+    place(&mut builder, floor(1.0, 0.0), &[diffuse(0.5)]);
+    place(&mut builder, floor(1.0, 0.6), &[diffuse(0.8)]);
+    builder.set_camera(parallel_camera(DVec3::Z * 0.25, DVec3::ZERO, 0.5, 16));
+    let picture = finish_and_render(builder, &settings(400_000, 64, 256));
+    let indirect = picture.indirect_radiance();
+    let direct: Vec<f64> = picture.radiance().iter().zip(&indirect).map(|(all, part)| all - part).collect();
+    [direct, indirect].map(|values| {
+        [0, 1].map(|side| {
+            let of_side = values.iter().enumerate().filter(|(i, _)| i % 16 / 8 == side);
+            mean(&of_side.map(|(_, value)| *value).collect::<Vec<_>>())
+        })
+    })
+}
+
+/// Direct light and photons are what the texture emits where they start, not its mean.
+#[test]
+fn a_textured_emitter_shines_as_its_parts_would() {
+    let (parts, textured) = (below_a_panel(false), below_a_panel(true));
+    for (parts, textured) in parts.into_iter().flatten().zip(textured.into_iter().flatten()) {
+        assert_close(textured, parts, 0.01);
+    }
+}
+
+/// Seen from far outside the scene, a texture is as wide as it is from within: a pixel shows the mean of what it covers.
+#[test]
+fn a_texture_far_from_the_camera_is_seen_at_the_width_of_a_pixel() {
+    let mut builder = SceneBuilder::default();
+    let texels: Vec<_> = (0..256 * 256_u32)
+        .map(|i| {
+            let gray = if (i.wrapping_mul(2_654_435_761) >> 16) & 1 == 0 { 0.2 } else { 0.8 };
+            [gray, gray, gray, 1.0]
+        })
+        .collect();
+    let texture = Texture::new([256, 256], Pixels::Floats(texels), Encoding::Linear).expect("texels");
+    let mut record = diffuse(0.5);
+    record.program = texture_program(&mut builder, texture, Interpolation::Linear, Input::Color);
+    place(&mut builder, square_with_coordinates(1.0, 0.0), &[record]);
+    builder.set_world(world(1.0));
+    builder.set_camera(camera(DVec3::Z * 50.0, DVec3::ZERO, 0.02, 8));
+    let mut settings = settings(1000, 16, 64);
+    settings.gather.camera_samples = 1;
+    let radiance = finish_and_render(builder, &settings).radiance();
+    assert!(spread(&radiance, 0.5) < 0.08, "pixels differ by {}", spread(&radiance, 0.5));
 }

@@ -46,7 +46,7 @@ class Compiler(Folder):
         """Where on the surface things are asked for, while the slope of a bump is compiled."""
         self.normal: Register | None = None
         """The register that is the shading normal."""
-        self._chosen_normal: Register | None = None
+        self._normals: list[tuple[Any, Register | None]] = []
         self._silent = Folder(subject)
         self._known: dict[tuple[Any, ...], Operand] = {}
         self._numbers: dict[str, Register] = {}
@@ -87,13 +87,36 @@ class Compiler(Folder):
             return super().unit(a)
         return Varying(self.clamped(_operand(a)).index, clamp(a.number))
 
-    def take_normal(self, entry: Input) -> bool:
-        """Makes what feeds an input the shading normal; False where that is not possible."""
+    def note_normals(self, source: Output) -> None:
+        """Remembers the normal a shader asks for, and reports those it cannot have."""
+        entry = source.find("Normal")
+        if entry is None:
+            return
+        own = self._linked_normal(source.b_node, entry)
+        self._normals.append((source.b_node, own))
+        coat = source.find("Coat Normal")
+        if coat is not None and isinstance(origin(coat), Output) and self.compile(coat) != own:
+            self.report_node(source.b_node, "Coat Normal is not supported yet; Normal is used instead")
+
+    def choose_normal(self) -> None:
+        """Makes the first normal that feeds a shader that of the whole material; shaders with others are reported."""
+        chosen = next((own for _, own in self._normals if own is not None), None)
+        if chosen is None:
+            return
+        self.normal = chosen
+        for b_node, own in self._normals:
+            if own != chosen:
+                message = "its Normal differs from another shader's, which is used for the whole material"
+                self.report_node(b_node, message)
+
+    def _linked_normal(self, b_node: Any, entry: Input) -> Register | None:
+        if not isinstance(origin(entry), Output):
+            return None
         found = self.compile(entry)
-        if not isinstance(found, Register) or self._chosen_normal not in (None, found):
-            return False
-        self._chosen_normal = self.normal = found
-        return True
+        if isinstance(found, Register):
+            return found
+        self.report_node(b_node, "a constant Normal is not supported; the surface's own is used instead")
+        return None
 
     # What the nodes are made of.
 

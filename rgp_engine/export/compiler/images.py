@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..image import MOST_PIXELS
+from ..image import pixels_of
 
 if TYPE_CHECKING:
     from .compiler import Compiler
@@ -42,13 +42,9 @@ def _encoding(c: "Compiler", b_image: Any) -> str:
 def image_pixels(b_image: Any) -> npt.NDArray[Any] | None:
     """Texels (height, width, 4), rows from the bottom, the color multiplied by alpha where the image says so: bytes or
     float as in the file. None when it is missing or too large."""
-    width, height = b_image.size
-    channels = b_image.channels
-    if not (width and height and channels) or width * height > MOST_PIXELS:
+    values: npt.NDArray[Any] | None = pixels_of(b_image)
+    if values is None:
         return None
-    values = np.empty(width * height * channels, np.float32)
-    b_image.pixels.foreach_get(values)
-    values = values.reshape(height, width, channels)
     if not b_image.is_float:
         values = np.rint(values * 255.0).clip(0, 255).astype(np.uint8)
     texels = _four_channels(values)

@@ -73,12 +73,16 @@ def _map_range(c: "Compiler", source: Output) -> "Operand | None":
         operands = [c.input(source, name) for name in ("Value", *names)]
     value, from_min, from_max, to_min, to_max, steps = operands
     v = c.vector_math
-    t = v("DIVIDE", v("SUBTRACT", value, from_min), v("SUBTRACT", from_max, from_min))
+    span = v("SUBTRACT", from_max, from_min)
+    t = v("DIVIDE", v("SUBTRACT", value, from_min), span)
     if b_node.interpolation_type == "STEPPED":
         t = v("DIVIDE", v("FLOOR", v("MULTIPLY", t, v("ADD", steps, 1.0))), steps)
     elif b_node.interpolation_type != "LINEAR":
         t = _smooth(c, c.clamped(t), is_smoother=b_node.interpolation_type == "SMOOTHERSTEP")
     result = c.mixed(t, to_min, to_max)
+    if not is_vector:
+        # A range of nothing gives 0, not its end as for vectors.
+        result = c.math("MULTIPLY", result, c.math("SIGN", c.math("ABSOLUTE", span)))
     if b_node.clamp and b_node.interpolation_type in ("LINEAR", "STEPPED"):
         return c.clamped(result, v("MINIMUM", to_min, to_max), v("MAXIMUM", to_min, to_max))
     return result
@@ -164,9 +168,10 @@ def _curves(count: int) -> "Callable[[Compiler, Output], Operand | None]":
         name = {"CURVE_RGB": "Color", "CURVE_VEC": "Vector", "CURVE_FLOAT": "Value"}[source.b_node.type]
         low, high = _domain(b_mapping)
         value = c.input(source, name)
+        inside = c.clamped(value, low, high) if b_mapping.extend == "HORIZONTAL" else value
         factor = "Factor" if source.b_node.type == "CURVE_FLOAT" else "Fac"
         bent = c.emit(
-            "curves", color=value, table=_curve_table(b_mapping, count, low, high), low=low, high=high
+            "curves", color=inside, table=_curve_table(b_mapping, count, low, high), low=low, high=high
         )
         return c.mixed(c.input(source, factor), value, bent)
 

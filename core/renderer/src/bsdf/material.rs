@@ -52,6 +52,8 @@ pub struct PreparedMaterial {
     classes: LobeSet,
     constant_lambert: Option<Rgb>,
     mean_emission: Rgb,
+    /// Whether the emission differs from its mean, from point to point or with the direction.
+    emits_unevenly: bool,
     specular_tint: Rgb,
     /// Share of light that passes straight through, the most that can occur.
     transparency: Rgb,
@@ -117,6 +119,7 @@ impl PreparedMaterial {
                 self.mean_emission = extreme.mean_emission;
             }
         }
+        self.emits_unevenly = !self.mean_emission.is_black();
         self.transparency = self.transparency.map(|c| c.min(1.0));
         self.constant_lambert = None;
         self.varying = Some(Box::new(varying));
@@ -187,6 +190,7 @@ impl PreparedMaterial {
             self.constant_lambert = Some(self.lambert);
         }
         self.mean_emission = self.cosine_mean_emission();
+        self.emits_unevenly = self.closures.iter().any(|(_, closure)| closure.dims_its_emission());
     }
 
     /// ∫ 2 cos · emission dcos.
@@ -249,10 +253,16 @@ impl PreparedMaterial {
     }
 
     /// Radiance emitted (W·m⁻²·sr⁻¹), the same from both sides. Under a coat it depends on the direction: this is the
-    /// cosine-weighted mean, π times it is the true exitance. [`Bsdf::emission`] is exact.
+    /// cosine-weighted mean, π times it is the true exitance. Where it varies it is typical. [`Bsdf::emission`] is exact.
     #[must_use]
     pub fn emission(&self) -> Rgb {
         self.mean_emission
+    }
+
+    /// True when what is emitted differs from [`PreparedMaterial::emission`], from point to point or with the direction.
+    #[must_use]
+    pub fn emits_unevenly(&self) -> bool {
+        self.emits_unevenly
     }
 
     /// Share of light that passes straight through, the most that can occur.
@@ -339,6 +349,11 @@ impl PreparedClosure {
             }
         }
         Rgb::BLACK
+    }
+
+    /// True when what is emitted below a coat depends on the direction.
+    fn dims_its_emission(&self) -> bool {
+        matches!(self, Self::Principled(principled) if principled.dims_its_emission())
     }
 
     fn classes(&self) -> LobeSet {

@@ -95,6 +95,11 @@ impl Principled {
         (bare && self.specular.is_none()).then_some(self.base_color)
     }
 
+    /// True when what is emitted below the coat depends on the direction.
+    pub(super) fn dims_its_emission(&self) -> bool {
+        self.coat.is_some() && !self.emission.is_black()
+    }
+
     /// Shares of metal, glass and the layered diffuse base, without the coat.
     fn shares(&self) -> [f32; 3] {
         let rest = 1.0 - self.metallic;

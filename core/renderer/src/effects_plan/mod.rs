@@ -4,7 +4,7 @@
 //! Effects are of two kinds. Some are **classes of light paths** ([`Effect::is_path_class`]): every path from a light to
 //! the eye belongs to one of them, or meets the eye through mirrors and glass alone and is always computed (decision 7).
 //! Others are **parts of the scene** that paths begin or pass at: they are left out of the materials and of the world,
-//! and all paths with them.
+//! and all paths with them. Depth of field is a part of the camera, which is a pinhole without it.
 
 mod costs;
 
@@ -16,7 +16,7 @@ use crate::stats::EffectStats;
 pub use costs::{Costs, Meter, Owner};
 
 /// Number of effects.
-pub const EFFECTS: usize = 8;
+pub const EFFECTS: usize = 9;
 
 /// One effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +37,8 @@ pub enum Effect {
     EmissiveMeshes,
     /// Surfaces that let light straight through.
     AlphaTransparency,
+    /// Blur of what is not in focus.
+    DepthOfField,
 }
 
 impl Effect {
@@ -50,6 +52,7 @@ impl Effect {
         Self::EnvironmentLight,
         Self::EmissiveMeshes,
         Self::AlphaTransparency,
+        Self::DepthOfField,
     ];
 
     /// Name in settings and statistics.
@@ -64,6 +67,7 @@ impl Effect {
             Self::EnvironmentLight => "environment_light",
             Self::EmissiveMeshes => "emissive_meshes",
             Self::AlphaTransparency => "alpha_transparency",
+            Self::DepthOfField => "depth_of_field",
         }
     }
 
@@ -71,7 +75,7 @@ impl Effect {
     #[must_use]
     pub const fn pass(self) -> &'static str {
         match self {
-            Self::DirectLight | Self::Caustics => "gather",
+            Self::DirectLight | Self::Caustics | Self::DepthOfField => "gather",
             _ => "photon_pass, gather",
         }
     }
@@ -94,6 +98,7 @@ impl Effect {
             Self::EnvironmentLight => settings.environment_light,
             Self::EmissiveMeshes => settings.emissive_meshes,
             Self::AlphaTransparency => settings.alpha_transparency,
+            Self::DepthOfField => settings.depth_of_field,
         }
     }
 }
@@ -151,6 +156,8 @@ pub struct EffectsPlan {
     pub reads: LobeSet,
     /// Surfaces let light straight through: shadow rays have to look.
     pub transparency: bool,
+    /// Camera rays pass through the lens.
+    pub depth_of_field: bool,
     /// Gather rays have something to find.
     pub gathers: bool,
 }
@@ -169,6 +176,7 @@ impl EffectsPlan {
         let light_samples = !scene.lamps.is_empty() || materials.iter().any(|m| !m.emission().is_black());
         let mut planned = path_classes(scene, &used, settings, materials, world);
         planned.extend(parts);
+        planned.push(depth_of_field(scene, settings));
         let computed = |effect: Effect| planned[effect as usize].is_computed();
         let lobes = |effect, set| if computed(effect) { set } else { LobeSet::EMPTY };
         let reads =
@@ -179,6 +187,7 @@ impl EffectsPlan {
             caustics: computed(Effect::Caustics),
             reads,
             transparency: computed(Effect::AlphaTransparency),
+            depth_of_field: computed(Effect::DepthOfField),
             gathers: planned.iter().any(|line| {
                 line.is_computed() && (line.effect.is_path_class() || line.effect == Effect::MirrorsAndGlass)
             }),
@@ -314,6 +323,13 @@ fn path_classes(
         .map(|(effect, because)| Planned { effect, switch: effect.switch(settings), because })
         .into_iter()
         .collect()
+}
+
+/// Plans the camera's lens.
+fn depth_of_field(scene: &Scene, settings: &EffectSettings) -> Planned {
+    let effect = Effect::DepthOfField;
+    let because = scene.camera.lens.as_ref().map(|_| format!("the aperture of '{}'", scene.camera.name));
+    Planned { effect, switch: effect.switch(settings), because }
 }
 
 /// What a material with lobes that are followed is called.

@@ -67,6 +67,7 @@ pub struct Film {
     width: usize,
     height: usize,
     filter: Filter,
+    exposure: f32,
     tiles: Vec<TileRect>,
     /// Edge of a tile (pixels).
     edge: usize,
@@ -104,6 +105,7 @@ impl Film {
             width,
             height,
             filter: Filter::new(settings.filter, settings.filter_width),
+            exposure: settings.exposure,
             pass: tiles.iter().map(|_| Mutex::default()).collect(),
             tiles,
             edge: edge as usize,
@@ -173,7 +175,7 @@ impl Film {
     #[must_use]
     pub fn combined(&self) -> Vec<f32> {
         self.read(|s| {
-            let [r, g, b] = s.combined().0;
+            let [r, g, b] = (s.combined() * self.exposure).0;
             [r, g, b, s.alpha()]
         })
     }
@@ -181,7 +183,7 @@ impl Film {
     /// Light that was scattered at least twice: red, green and blue of every pixel, rows from the bottom.
     #[must_use]
     pub fn indirect(&self) -> Vec<f32> {
-        self.read(|s| s.indirect().0)
+        self.read(|s| (s.indirect() * self.exposure).0)
     }
 
     /// Standard error of the combined picture, one value per pixel (root mean square of the channels), rows from the
@@ -190,7 +192,7 @@ impl Film {
     pub fn error(&self) -> Vec<f32> {
         let halves = self.halves.read().unwrap_or_else(PoisonError::into_inner);
         let [a, b] = &*halves;
-        a.par_iter().zip(b).map(|(a, b)| error::of_pixel(a, b).sqrt()).collect()
+        a.par_iter().zip(b).map(|(a, b)| self.exposure * error::of_pixel(a, b).sqrt()).collect()
     }
 
     /// Standard error of the whole picture; `None` before both halves know it.
@@ -282,7 +284,7 @@ mod tests {
     use crate::settings::PixelFilter;
 
     fn film(filter: PixelFilter, filter_width: f32) -> Film {
-        Film::new(13, 9, &FilmSettings { filter, filter_width, tile_size: 5 })
+        Film::new(13, 9, &FilmSettings { filter, filter_width, tile_size: 5, ..FilmSettings::default() })
     }
 
     fn pass(film: &Film, rays: u32, half: usize, mut value: impl FnMut(u32, u32) -> PixelSample) {
@@ -327,6 +329,22 @@ mod tests {
             });
         }
         assert!(film.combined().chunks(4).all(|p| (p[0] - 3.0).abs() < 1e-6 && (p[3] - 1.0).abs() < 1e-6));
+    }
+
+    #[test]
+    fn exposure_is_a_factor_of_light_alone() {
+        let settings = FilmSettings { exposure: 2.5, ..FilmSettings::default() };
+        let film = Film::new(8, 4, &settings);
+        for (half, light) in [1.0, 3.0].into_iter().enumerate() {
+            pass(&film, 1, half, |_, _| {
+                let (direct, indirect) = (Rgb::splat(light), Rgb::splat(2.0));
+                PixelSample { direct, indirect, alpha: 0.5, taken: true, ..Default::default() }
+            });
+        }
+        let close = |values: Vec<f32>, expected: f32| values.iter().all(|v| (v - expected).abs() < 1e-5);
+        assert!(film.combined().chunks(4).all(|p| (p[0] - 10.0).abs() < 1e-5 && (p[3] - 0.5).abs() < 1e-6));
+        assert!(close(film.indirect(), 5.0) && close(film.error(), 2.5));
+        assert!((film.picture_error().unwrap().rms_mean - 25.0).abs() < 1e-4, "relative to the picture");
     }
 
     #[test]

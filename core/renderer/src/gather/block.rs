@@ -16,7 +16,7 @@ use crate::sampling::{PixelSeeds, Rng, hash};
 use crate::scene::visibility;
 use crate::settings::GatherSampling;
 
-use super::camera::camera_ray;
+use super::camera::{CameraRay, camera_ray};
 use super::deferred::{Deferred, Target, Traces};
 use super::direct::{ShadowRay, Shares, lambert_shadow_ray, shadow_ray, transmittance};
 use super::lambert::LambertLanes;
@@ -41,6 +41,8 @@ pub(super) struct Block<'a, 'g, E: Estimator> {
     has_vertices: bool,
     samples: [PixelSample; LANES],
     packet: Packet,
+    /// How far from the lens each camera ray starts.
+    start: [f32; LANES],
     /// Of the packet: gather rays that did not start on a constant Lambert surface.
     others: [Option<GatherRay>; LANES],
     traces: Traces<E::Place>,
@@ -59,6 +61,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             has_vertices: false,
             samples: [PixelSample::default(); LANES],
             packet: Packet::default(),
+            start: [0.0; LANES],
             others: [None; LANES],
             traces: Traces::default(),
         }
@@ -119,8 +122,17 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             self.samples[lane] = PixelSample { offset, taken: true, ..Default::default() };
             let offset = DVec2::new(f64::from(offset[0]), f64::from(offset[1]));
             let position = DVec2::new(f64::from(frame_x), f64::from(frame_y)) + 0.5 + offset;
-            let (ray, far) = camera_ray(camera, g.lit, position);
-            self.packet.set(lane, &ray, far);
+            let CameraRay { ray, reach, start } = match &g.lens {
+                None => camera_ray(camera, g.lit, position, None),
+                Some((lens, set)) => {
+                    let owner = self.traces.meter.enter(Effect::DepthOfField);
+                    let point = lens.point(set.point(self.sample as usize, hash(key, 4) as u32));
+                    self.traces.meter.back(owner);
+                    camera_ray(camera, g.lit, position, Some((lens, point)))
+                }
+            };
+            self.start[lane] = start;
+            self.packet.set(lane, &ray, reach);
         }
         self.seeds = PixelSeeds::new(&seeds);
         g.lit.accel.intersect_packet(&mut self.packet);
@@ -140,15 +152,17 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let g = self.gatherer;
         let Some(hit) = hit.filter(|hit| !g.lit.accel.is_lamp(hit.object)) else { return false };
         let (ng, material) = g.lit.accel.triangle(hit.object, hit.primitive);
-        if g.sampling != GatherSampling::Cosine {
+        if g.sampling != GatherSampling::Cosine || g.is_holdout(&hit) {
             return false;
         }
         let albedo = match g.plain[material] {
             Some(albedo_over_pi) => albedo_over_pi * PI,
-            None => match g.lit.varying_albedo(material, ray, &hit, g.camera_width.at(hit.t)) {
-                Some(albedo) => albedo,
-                None => return false,
-            },
+            None => {
+                match g.lit.varying_albedo(material, ray, &hit, g.camera_width.at(self.start[lane] + hit.t)) {
+                    Some(albedo) => albedo,
+                    None => return false,
+                }
+            }
         };
         let frame = g.lit.frame(ray, &hit, ng);
         let p = ray.origin + ray.direction * hit.t;
@@ -160,7 +174,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     fn follow_camera(&mut self, lane: usize, mut ray: Ray, hit: Option<Hit>) {
         let g = self.gatherer;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.sample) << 16 | 1));
-        let (kind, width) = (visibility::CAMERA, g.camera_width);
+        let (kind, width) = (visibility::CAMERA, g.camera_width.after(self.start[lane]));
         let mut sampled =
             Sampled { pdf: None, shares: Shares::EVEN, kind, light: None, lit_side: None, width };
         let owner = self.traces.meter.owner();
@@ -170,9 +184,9 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             let mut end = None;
             let met = g.meet(ray, first.take(), sampled, &mut rng, &mut self.traces.meter, &mut end);
             let sample = &mut self.samples[lane];
-            if end.is_some() || depth > 0 || !transparent_film {
+            if met.is_hole || end.is_some() || depth > 0 || !transparent_film {
                 sample.direct += throughput * met.light;
-                sample.alpha = 1.0;
+                sample.alpha = f32::from(u8::from(!met.is_hole));
             }
             let Some(surface) = end else { break };
             throughput *= met.through;
@@ -188,7 +202,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             self.traces.meter.count(Effect::MirrorsAndGlass, 1);
             throughput *= sample.weight;
             sampled.kind = ray_kind(&sample);
-            sampled.width.start = sampled.width.at(met.distance);
+            sampled.width = sampled.width.after(met.distance);
             ray = Ray::leaving(surface.p, surface.ng, sample.wi, sampled.kind | g.lit.accel.lamp_bit());
             self.traces.rays.camera += 1;
         }
@@ -239,11 +253,11 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     fn shadow(&self, lane: usize, u: [f32; 3]) -> Option<ShadowRay> {
         let g = self.gatherer;
         if self.lambert.set[lane] {
-            let sample = g.lit.lights.sample_direct(self.lambert.receiver(lane), u)?;
+            let sample = g.lit.sample_direct(self.lambert.receiver(lane), u)?;
             return lambert_shadow_ray(&self.lambert, lane, &sample, g.shares);
         }
         let vertex = self.vertices[lane].as_ref()?;
-        let sample = g.lit.lights.sample_direct(vertex.surface.receiver(), u)?;
+        let sample = g.lit.sample_direct(vertex.surface.receiver(), u)?;
         let mut shadow = shadow_ray(&vertex.surface, &sample, LobeSet::ALL, LobeSet::ALL, g.shares)?;
         shadow.radiance *= vertex.throughput;
         Some(shadow)

@@ -4,28 +4,103 @@ use glam::{DVec2, DVec3};
 
 use crate::accel::Ray;
 use crate::lit_scene::LitScene;
-use crate::scene::{Camera, Projection, visibility};
+use crate::scene::{Camera, Lens, Projection, visibility};
 
-/// The ray through `position` of the full frame (pixels from its bottom left), with the distance at which the far clip
-/// plane ends it.
+use super::Width;
+
+/// A ray from the camera.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CameraRay {
+    pub(super) ray: Ray,
+    /// Distance along the ray at which the far clip plane ends it.
+    pub(super) reach: f32,
+    /// How far from the lens it starts.
+    pub(super) start: f32,
+}
+
+/// The ray through `position` of the full frame (pixels from its bottom left), and through a point of the lens if there is
+/// one.
 #[must_use]
-pub(super) fn camera_ray(camera: &Camera, lit: &LitScene<'_>, position: DVec2) -> (Ray, f32) {
+pub(super) fn camera_ray(
+    camera: &Camera,
+    lit: &LitScene<'_>,
+    position: DVec2,
+    lens: Option<(&Lens, DVec2)>,
+) -> CameraRay {
     let [left, right, bottom, top] = camera.window;
     let at = position / DVec2::new(f64::from(camera.resolution[0]), f64::from(camera.resolution[1]));
     let plane = DVec2::new(left + (right - left) * at.x, bottom + (top - bottom) * at.y);
     // One unit of depth along the ray.
-    let (origin, direction) = match camera.projection {
+    let (mut origin, mut direction) = match camera.projection {
         Projection::Perspective => (DVec3::ZERO, plane.extend(-1.0)),
         Projection::Orthographic => (plane.extend(0.0), DVec3::NEG_Z),
     };
+    if let Some((lens, point)) = lens {
+        // All rays of one position meet in the plane of focus.
+        origin += point.extend(0.0);
+        direction -= (point / lens.focus_distance()).extend(0.0);
+    }
     let [near, far] = camera.clip.map(f64::from);
+    let near = near.max(0.0);
     let to_scene = &camera.scene_from_camera;
-    let start = to_scene.transform_point3(origin + direction * near.max(0.0));
+    let start = to_scene.transform_point3(origin + direction * near);
     let direction = to_scene.transform_vector3(direction);
     let length = direction.length();
     let (ray, moved) =
         lit.entering(start, (direction / length).as_vec3(), visibility::CAMERA | lit.accel.camera_lamp_bit());
     #[expect(clippy::cast_possible_truncation, reason = "rays are traced in f32")]
-    let reach = ((far - near.max(0.0)) * length) as f32 - moved;
-    (ray, reach.max(0.0))
+    let [reach, start] = [((far - near) * length) as f32 - moved, (near * length) as f32 + moved];
+    CameraRay { ray, reach: reach.max(0.0), start }
+}
+
+/// The width of a camera sample: the area of a pixel, and that of its blur, dealt out to the samples.
+#[expect(clippy::cast_possible_truncation, reason = "widths need no more than f32")]
+pub(super) fn camera_width(camera: &Camera, lens: Option<&Lens>, camera_samples: u32) -> Width {
+    let share = 1.0 / f64::from(camera_samples).sqrt();
+    let [left, right, ..] = camera.window;
+    let pixel = ((right - left).abs() / f64::from(camera.resolution[0]) * share) as f32;
+    let (start, spread) = match camera.projection {
+        Projection::Perspective => (0.0, pixel),
+        Projection::Orthographic => (pixel, 0.0),
+    };
+    let blur = lens.map_or(0.0, |lens| lens.area().sqrt() * share);
+    let blur_spread = lens.map_or(0.0, |lens| -blur / lens.focus_distance());
+    Width { start, spread, blur: blur as f32, blur_spread: blur_spread as f32 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::SceneBuilder;
+    use crate::scene::record::{CameraRecord, LensRecord};
+
+    /// Wide as the pixel in the plane of focus; elsewhere wider by the blur, also behind a mirror that the ray met before.
+    #[test]
+    fn camera_rays_are_as_wide_as_what_they_stand_for() {
+        let (focus, radius, pixel, samples) = (2.0, 0.1, 0.01, 4);
+        let lens = LensRecord { radius, blades: 0, rotation: 0.0, ratio: 1.0, focus_distance: focus };
+        let mut builder = SceneBuilder::default();
+        builder.set_camera(CameraRecord {
+            name: "camera".into(),
+            projection: Projection::Perspective,
+            world_from_camera: glam::DMat4::IDENTITY.to_cols_array_2d(),
+            window: [-1.0, 1.0, -1.0, 1.0],
+            resolution: [200, 200],
+            region: [0, 0, 200, 200],
+            clip: [0.0, 100.0],
+            lens: Some(lens),
+        });
+        let camera = builder.finish().expect("a camera suffices").camera;
+        let width = camera_width(&camera, camera.lens.as_ref(), samples);
+        for depth in [0.5, 2.0, 3.0, 7.0] {
+            let blur = std::f64::consts::PI.sqrt() * radius * (1.0 - depth / focus).abs();
+            let expected = (pixel * depth + blur) / f64::from(samples).sqrt();
+            let depth = depth as f32;
+            for found in [width.at(depth), width.after(0.4).at(depth - 0.4)] {
+                assert!((f64::from(found) - expected).abs() < 1e-6, "{found} is not {expected}");
+            }
+            let sharp = camera_width(&camera, None, samples).at(depth);
+            assert!((f64::from(sharp) - pixel * f64::from(depth) / 2.0).abs() < 1e-7);
+        }
+    }
 }

@@ -27,7 +27,7 @@ use std::sync::{Mutex, PoisonError};
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
-use crate::accel::Ray;
+use crate::accel::{Hit, Ray};
 use crate::bsdf::{LobeSet, PreparedMaterial, TransportMode, Varying};
 use crate::color::Rgb;
 use crate::effects_plan::Costs;
@@ -38,12 +38,12 @@ use crate::lit_scene::{LitScene, Surface, ray_kind};
 use crate::progress::Progress;
 use crate::pyramid::SETS;
 use crate::sampling::{Rng, StratifiedSet, hash};
-use crate::scene::{Projection, visibility};
+use crate::scene::{Lens, visibility};
 use crate::settings::{GatherSampling, RenderSettings};
 use crate::stats::{RayCounts, StoppedBy};
 
 use block::{Block, widest_stratum};
-use camera::camera_ray;
+use camera::{camera_ray, camera_width};
 use convergence::Convergence;
 use deferred::{OpenTile, Traces};
 use direct::Shares;
@@ -62,6 +62,8 @@ pub struct Gatherer<'a, E> {
     max_depth: u32,
     sampling: GatherSampling,
     camera_set: StratifiedSet,
+    /// The lens that camera rays pass through, and where.
+    lens: Option<(&'a Lens, StratifiedSet)>,
     light_set: StratifiedSet,
     gather_set: StratifiedSet,
     /// Of a pixel: light samples against gather rays.
@@ -95,32 +97,31 @@ fn is_varying_lambert(material: &PreparedMaterial) -> bool {
 struct Width {
     start: f32,
     spread: f32,
+    /// Blur of the lens where the ray starts, and how it grows; below zero before it grows again.
+    blur: f32,
+    blur_spread: f32,
 }
 
 impl Width {
     /// That of a ray without extent.
-    const NONE: Self = Self { start: 0.0, spread: 0.0 };
+    const NONE: Self = Self { start: 0.0, spread: 0.0, blur: 0.0, blur_spread: 0.0 };
 
     /// Of a ray that stands for a solid angle.
     fn of_solid_angle(solid_angle: f32) -> Self {
-        Self { start: 0.0, spread: solid_angle.sqrt() }
+        Self { spread: solid_angle.sqrt(), ..Self::NONE }
     }
 
     fn at(self, distance: f32) -> f32 {
-        self.start + self.spread * distance
+        self.start + self.spread * distance + (self.blur + self.blur_spread * distance).abs()
     }
-}
 
-/// The width of a camera sample: a pixel's area, dealt out to its samples.
-#[expect(clippy::cast_possible_truncation, reason = "widths need no more than f32")]
-fn camera_width(lit: &LitScene<'_>, camera_samples: u32) -> Width {
-    let camera = &lit.accel.scene().camera;
-    let [left, right, ..] = camera.window;
-    let pixel = (right - left).abs() / f64::from(camera.resolution[0]);
-    let share = (pixel / f64::from(camera_samples).sqrt()) as f32;
-    match camera.projection {
-        Projection::Perspective => Width { start: 0.0, spread: share },
-        Projection::Orthographic => Width { start: share, spread: 0.0 },
+    /// That of the ray that goes on after a distance.
+    fn after(self, distance: f32) -> Self {
+        Self {
+            start: self.start + self.spread * distance,
+            blur: self.blur + self.blur_spread * distance,
+            ..self
+        }
     }
 }
 
@@ -139,6 +140,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         let reads_diffuse = lit.plan.reads.intersects(LobeSet::DIFFUSE);
         let varying_lambert_read: Vec<bool> =
             lit.materials.iter().map(|material| reads_diffuse && is_varying_lambert(material)).collect();
+        let camera = &lit.accel.scene().camera;
+        let lens = camera.lens.as_ref().filter(|_| lit.plan.depth_of_field);
         Self {
             lit,
             estimator,
@@ -149,6 +152,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             max_depth: gather.max_depth.max(E::LEAST_DEPTH),
             sampling: gather.sampling,
             camera_set: set(gather.camera_samples, 1),
+            lens: lens.map(|lens| (lens, StratifiedSet::unshared(gather.camera_samples))),
             light_set: set(gather.camera_samples * gather.light_samples, 2),
             gather_set: set(gather.rays, 3),
             shares: Shares {
@@ -163,8 +167,13 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             plain,
             has_varying: varying_lambert_read.contains(&true),
             varying_lambert_read,
-            camera_width: camera_width(lit, gather.camera_samples),
+            camera_width: camera_width(camera, lens, gather.camera_samples),
         }
+    }
+
+    /// True where camera rays see a hole in the picture.
+    fn is_holdout(&self, hit: &Hit) -> bool {
+        self.lit.accel.scene().objects[hit.object as usize].is_holdout()
     }
 
     /// What a gather ray of density `pdf` stands for (sr).
@@ -302,7 +311,7 @@ pub fn seen_points(lit: &LitScene<'_>, seed: u32) -> Vec<Vec3> {
         // The whole frame, so that a border crops the picture and changes nothing in it.
         let at = DVec2::new(f64::from(i % EDGE), f64::from(i / EDGE)) + 0.5;
         let position = at / f64::from(EDGE) * frame;
-        let (ray, _) = camera_ray(camera, lit, position);
+        let ray = camera_ray(camera, lit, position, None).ray;
         let mut points = Vec::new();
         if let Some(surface) = first_scatterer(lit, ray, MAX_DEPTH, &mut rng) {
             points.push(surface.p);

@@ -57,6 +57,8 @@ pub(super) struct Met {
     pub(super) distance: f32,
     /// Share of light from the surface that arrives through what is transparent before it.
     pub(super) through: Rgb,
+    /// True where the camera sees a hole in the picture; there is no surface then.
+    pub(super) is_hole: bool,
 }
 
 impl<'a, E: Estimator> Gatherer<'a, E> {
@@ -87,7 +89,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         end: &mut Option<Surface<'a>>,
     ) -> Met {
         *end = None;
-        let mut met = Met { light: Rgb::BLACK, distance: 0.0, through: Rgb::WHITE };
+        let mut met = Met { light: Rgb::BLACK, distance: 0.0, through: Rgb::WHITE, is_hole: false };
         let (from, lit) = (Receiver { p: ray.origin, normal: sampled.lit_side }, self.lit);
         let mut known = first;
         for _ in 0..MAX_TRANSPARENT {
@@ -110,7 +112,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             };
             met.distance += hit.t;
             let surface = end.insert(lit.surface(&ray, hit, sampled.width.at(met.distance)));
-            if !surface.bsdf.emission.is_black() {
+            let is_hole = sampled.kind == visibility::CAMERA && self.is_holdout(&hit);
+            if !surface.bsdf.emission.is_black() && !is_hole {
                 let owner = meter.enter(Effect::EmissiveMeshes);
                 let (direction, distance) = (ray.direction, met.distance);
                 let pdf = lit.lights.emitter_pdf(from, hit.object, hit.primitive, direction, distance);
@@ -121,6 +124,9 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             let chance = transparency.mean().clamp(0.0, 1.0);
             if chance <= 0.0 || rng.draw() >= chance {
                 met.through = met.through * (1.0 / (1.0 - chance).max(f32::MIN_POSITIVE));
+                if is_hole {
+                    (met.is_hole, *end) = (true, None);
+                }
                 return met;
             }
             met.through = met.through * transparency * (1.0 / chance);
@@ -277,7 +283,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         if !surface.bsdf.has(counted) {
             return Rgb::BLACK;
         }
-        let sample = self.lit.lights.sample_direct(surface.receiver(), u);
+        let sample = self.lit.sample_direct(surface.receiver(), u);
         let shadow = sample.and_then(|sample| shadow_ray(surface, &sample, lobes, counted, Shares::EVEN));
         let Some(shadow) = shadow else { return Rgb::BLACK };
         shadow.radiance * transmittance(self.lit, &shadow, traces)

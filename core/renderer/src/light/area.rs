@@ -129,6 +129,7 @@ impl AreaLamp {
                 radiance_over_pdf,
                 pdf: 1.0,
                 is_delta: true,
+                point: None,
             });
         }
         let region = self.region(foot, height)?;
@@ -150,6 +151,7 @@ impl AreaLamp {
             radiance_over_pdf: radiance / pdf,
             pdf,
             is_delta: false,
+            point: None,
         })
     }
 
@@ -180,6 +182,7 @@ impl AreaLamp {
             flux: self.power,
             normal: Some(self.normal),
             lit_from: 0.0,
+            point: None,
         }
     }
 

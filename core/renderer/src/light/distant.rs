@@ -36,6 +36,6 @@ impl SceneBall {
     pub(super) fn photon(&self, direction: Vec3, flux: Rgb, u: [f32; 2]) -> Photon {
         let across = warp::disk(u) * self.radius;
         let origin = self.center + Frame::new(direction).from_local(across.extend(-self.radius));
-        Photon { origin, direction, flux, normal: None, lit_from: 0.0 }
+        Photon { origin, direction, flux, normal: None, lit_from: 0.0, point: None }
     }
 }

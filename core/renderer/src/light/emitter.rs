@@ -8,13 +8,15 @@ use glam::{DAffine3, DVec3, Vec3};
 
 use super::cluster::Bounds;
 use super::select::Cdf;
-use super::{LightSample, Photon, is_in_reach, warp};
+use super::{EmitterPoint, LightSample, Photon, is_in_reach, warp};
 use crate::color::Rgb;
 use crate::scene::{Mesh, Object};
 
 /// The emitting triangles of one object.
 #[derive(Clone, Debug)]
 pub(super) struct MeshEmitter {
+    /// Index of the object in the scene.
+    object: u32,
     mesh: Arc<Mesh>,
     scene_from_mesh: Option<DAffine3>,
     /// Radiance of each material slot; triangles of later slots have the last one.
@@ -29,8 +31,9 @@ pub(super) struct MeshEmitter {
 }
 
 impl MeshEmitter {
-    /// `None` for an object that does not emit. `emission[m]` is the radiance of material m.
-    pub(super) fn new(object: &Object, emission: &[Rgb]) -> Option<Self> {
+    /// `None` for an object that does not emit. `number` is its index in the scene, `emission[m]` the radiance of
+    /// material m.
+    pub(super) fn new(number: u32, object: &Object, emission: &[Rgb]) -> Option<Self> {
         let slot_radiance: Vec<Rgb> = object.materials.iter().map(|&m| emission[m as usize]).collect();
         if slot_radiance.iter().all(|radiance| radiance.is_black()) {
             return None;
@@ -54,6 +57,7 @@ impl MeshEmitter {
         }
         let weight = weights.iter().sum();
         Some(Self {
+            object: number,
             mesh: Arc::clone(&object.mesh),
             scene_from_mesh: object.scene_from_mesh,
             slot_radiance,
@@ -100,7 +104,8 @@ impl MeshEmitter {
     /// A point of one of the emitting triangles as seen from `p`.
     pub(super) fn sample(&self, p: Vec3, which: usize, u: [f32; 2]) -> Option<LightSample> {
         let triangle = self.triangle(which);
-        let along = (triangle.point(u) - p.as_dvec3()).as_vec3();
+        let barycentric = uniform_barycentric(u);
+        let along = (triangle.point(barycentric) - p.as_dvec3()).as_vec3();
         let distance = along.length();
         let wi = along.try_normalize()?;
         let pdf = triangle.pdf(wi, distance);
@@ -110,22 +115,30 @@ impl MeshEmitter {
             radiance_over_pdf: triangle.radiance / pdf,
             pdf,
             is_delta: false,
+            point: Some(self.point(which, barycentric, 1.0 / pdf)),
         })
     }
 
     /// A photon whose flux over its probability is the flux of the whole mesh, in the color of the chosen triangle.
     pub(super) fn emit(&self, choice: f32, position: [f32; 2], direction: [f32; 2]) -> Photon {
-        let triangle = self.triangle(self.cdf.choose(choice).index);
+        let which = self.cdf.choose(choice).index;
+        let triangle = self.triangle(which);
+        let barycentric = uniform_barycentric(position);
+        let per_radiance = (f64::from(TAU) * self.weight / f64::from(triangle.radiance.mean())) as f32;
         let side = 2.0 * direction[0];
         let normal = if side < 1.0 { triangle.normal } else { -triangle.normal };
         Photon {
-            origin: triangle.point(position).as_vec3(),
+            origin: triangle.point(barycentric).as_vec3(),
             direction: warp::cosine(normal, [side.fract(), direction[1]]),
-            flux: triangle.radiance
-                * (f64::from(TAU) * self.weight / f64::from(triangle.radiance.mean())) as f32,
+            flux: triangle.radiance * per_radiance,
             normal: Some(normal),
             lit_from: 0.0,
+            point: Some(self.point(which, barycentric, per_radiance)),
         }
+    }
+
+    fn point(&self, which: usize, barycentric: [f32; 2], per_radiance: f32) -> EmitterPoint {
+        EmitterPoint { object: self.object, primitive: self.triangles[which], barycentric, per_radiance }
     }
 
     fn radiance(&self, primitive: usize) -> Rgb {
@@ -166,17 +179,15 @@ impl Triangle {
         if cos == 0.0 { 0.0 } else { t * t / (self.area * cos) }
     }
 
-    /// Uniform over the area (Heitz 2019, "A Low-Distortion Map Between Triangle and Square").
-    fn point(&self, u: [f32; 2]) -> DVec3 {
-        let [mut s, mut t] = u.map(f64::from);
-        if t > s {
-            s *= 0.5;
-            t -= s;
-        } else {
-            t *= 0.5;
-            s -= t;
-        }
+    fn point(&self, barycentric: [f32; 2]) -> DVec3 {
+        let [s, t] = barycentric.map(f64::from);
         let [a, b, c] = self.corners;
         a * (1.0 - s - t) + b * s + c * t
     }
+}
+
+/// Weights of a triangle's second and third corner, uniform over the area (Heitz 2019, "A Low-Distortion Map Between
+/// Triangle and Square").
+fn uniform_barycentric([s, t]: [f32; 2]) -> [f32; 2] {
+    if t > s { [0.5 * s, t - 0.5 * s] } else { [s - 0.5 * t, 0.5 * t] }
 }

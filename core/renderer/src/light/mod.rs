@@ -62,6 +62,22 @@ pub struct Emission {
     pub lamp: Option<usize>,
     /// Ray kinds that see the light: a surface whose lobes are not among them is not lit by it directly.
     pub visibility: u32,
+    /// Where it leaves an emissive mesh.
+    pub point: Option<EmitterPoint>,
+}
+
+/// A point that was chosen on an emissive mesh. Lights know the typical radiance of its material; where that differs from
+/// point to point or with the direction, the radiance that is really emitted replaces it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EmitterPoint {
+    /// Index into [`Scene::objects`].
+    pub object: u32,
+    /// Triangle of its mesh.
+    pub primitive: u32,
+    /// Weights of the triangle's second and third corner.
+    pub barycentric: [f32; 2],
+    /// What one unit of radiance counts there: of a photon's flux, or over the pdf of direct light.
+    pub per_radiance: f32,
 }
 
 /// Where light is asked for.
@@ -76,6 +92,12 @@ pub struct Receiver {
 impl From<Vec3> for Receiver {
     fn from(p: Vec3) -> Self {
         Self { p, normal: None }
+    }
+}
+
+impl EmitterPoint {
+    fn chosen_with(self, probability: f32) -> Self {
+        Self { per_radiance: self.per_radiance / probability, ..self }
     }
 }
 
@@ -97,6 +119,8 @@ pub struct DirectSample {
     pub casts_shadow: bool,
     /// Ray kinds that see the light: lobes of other kinds are not lit by it.
     pub visibility: u32,
+    /// Where on an emissive mesh it is.
+    pub point: Option<EmitterPoint>,
 }
 
 /// A light's own part of [`Emission`]; the flux is that of the light.
@@ -106,6 +130,7 @@ struct Photon {
     flux: Rgb,
     normal: Option<Vec3>,
     lit_from: f32,
+    point: Option<EmitterPoint>,
 }
 
 /// A light's own part of [`DirectSample`], the choice of the light not included.
@@ -115,6 +140,7 @@ struct LightSample {
     radiance_over_pdf: Rgb,
     pdf: f32,
     is_delta: bool,
+    point: Option<EmitterPoint>,
 }
 
 /// A ray that may meet lamps.
@@ -182,8 +208,8 @@ impl Lights {
             .filter_map(|(index, lamp)| Light::from_lamp(index, lamp))
             .collect();
         let mut light_of_object = vec![None; scene.objects.len()];
-        for (object, light) in scene.objects.iter().zip(&mut light_of_object) {
-            if let Some(emitter) = MeshEmitter::new(object, &emission) {
+        for ((number, object), light) in (0..).zip(&scene.objects).zip(&mut light_of_object) {
+            if let Some(emitter) = MeshEmitter::new(number, object, &emission) {
                 *light = Some(lights.len());
                 let shape = Shape::Mesh(emitter);
                 lights.push(Light { shape, lamp: None, casts_shadow: true, visibility: object.visibility });
@@ -285,6 +311,7 @@ impl Lights {
             casts_shadow: light.is_none_or(|light| light.casts_shadow),
             lamp: light.and_then(|light| light.lamp),
             visibility: light.map_or(u32::MAX, |light| light.visibility),
+            point: photon.point.map(|point| point.chosen_with(chosen.probability)),
         })
     }
 
@@ -312,6 +339,7 @@ impl Lights {
             is_delta: sample.is_delta || !light.casts_shadow,
             casts_shadow: light.casts_shadow,
             visibility: light.visibility,
+            point: sample.point.map(|point| point.chosen_with(chosen.probability)),
         })
     }
 

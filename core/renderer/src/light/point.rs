@@ -77,7 +77,7 @@ impl PointLamp {
             let distance = to.length();
             let wi = to.try_normalize()?;
             let radiance_over_pdf = self.intensity * self.attenuation(-wi) / (distance * distance);
-            LightSample { wi, distance, radiance_over_pdf, pdf: 1.0, is_delta: true }
+            LightSample { wi, distance, radiance_over_pdf, pdf: 1.0, is_delta: true, point: None }
         } else if self.is_inside(to) {
             self.sample_inside(to, u)
         } else {
@@ -96,6 +96,7 @@ impl PointLamp {
             radiance_over_pdf: self.radiance() * (self.attenuation(-wi) * TAU * visible),
             pdf: 1.0 / (TAU * visible),
             is_delta: false,
+            point: None,
         }
     }
 
@@ -108,6 +109,7 @@ impl PointLamp {
             radiance_over_pdf: self.radiance() * (4.0 * PI),
             pdf: 0.25 * FRAC_1_PI,
             is_delta: false,
+            point: None,
         }
     }
 
@@ -152,7 +154,7 @@ impl PointLamp {
             (true, true) => (closest, h_squared / half_chord),
             (true, false) => (closest, f32::INFINITY),
         };
-        Photon { origin, direction, flux, normal: None, lit_from }
+        Photon { origin, direction, flux, normal: None, lit_from, point: None }
     }
 
     fn attenuation(&self, direction: Vec3) -> f32 {

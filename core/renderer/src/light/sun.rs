@@ -69,7 +69,8 @@ impl SunLamp {
         } else {
             (self.irradiance, 1.0)
         };
-        LightSample { wi, distance: f32::INFINITY, radiance_over_pdf, pdf, is_delta: !self.has_extent() }
+        let is_delta = !self.has_extent();
+        LightSample { wi, distance: f32::INFINITY, radiance_over_pdf, pdf, is_delta, point: None }
     }
 
     /// What a ray that leaves the scene along `wi` sees of the sun.

@@ -184,7 +184,9 @@ impl Point for HitPoint<'_> {
         let along_u = (along_b * uv_c.y - along_c * uv_b.y) * side;
         let ns = self.object_normal(self.ns);
         let tangent = (along_u - ns * along_u.dot(ns)).try_normalize()?;
-        Some([tangent, ns.cross(tangent) * side, ns])
+        // A mirrored object's corners go round the other way in its own space.
+        let turn = along_b.cross(along_c).dot(self.object_normal(self.ng)).signum();
+        Some([tangent, ns.cross(tangent) * (side * turn), ns])
     }
 
     fn world_normal(&self, normal: Vec3) -> Vec3 {

@@ -116,7 +116,7 @@ impl<S: PhotonSink> Tracer<'_, S> {
     /// Follows one photon from its lamp; gives the number of segments traced.
     fn photon(&self, mut sampler: PhotonSampler, landed: &mut S::Batch, meter: &mut Meter) -> u64 {
         let u = [sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw()];
-        let Some(emission) = self.lit.lights.emit(u) else { return 0 };
+        let Some(emission) = self.lit.emit(u) else { return 0 };
         let flux = emission.flux * self.share;
         let leaving = match emission.normal {
             Some(normal) => {
@@ -124,7 +124,8 @@ impl<S: PhotonSink> Tracer<'_, S> {
             }
             None => emission.origin,
         };
-        let mask = visibility::DIFFUSE;
+        // On its first way a photon is a shadow ray the other way round.
+        let mask = visibility::DIFFUSE | visibility::SHADOW;
         let (mut ray, mut travelled) = self.lit.entering(leaving.as_dvec3(), emission.direction, mask);
         let lobes = lobes_lit(emission.visibility);
         let mut segments = 0;
@@ -133,10 +134,11 @@ impl<S: PhotonSink> Tracer<'_, S> {
             meter.count_own(1);
             let Some(hit) = self.lit.accel.intersect(&ray) else { break };
             travelled += hit.t;
-            if travelled >= emission.lit_from {
+            let visible_to = self.lit.accel.scene().objects[hit.object as usize].visibility;
+            if travelled >= emission.lit_from && visible_to & visibility::DIFFUSE != 0 {
                 segments += self.scatter(Arrival { ray, hit, flux, lobes }, &mut sampler, landed, meter);
             }
-            if emission.casts_shadow {
+            if emission.casts_shadow && visible_to & visibility::SHADOW != 0 {
                 break;
             }
             let ng = self.lit.accel.geometric_normal(hit.object, hit.primitive);

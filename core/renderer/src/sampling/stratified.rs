@@ -45,6 +45,12 @@ impl StratifiedSet {
         Self { raw, shared, mask: [leading(bits.div_ceil(2)), leading(bits / 2)] }
     }
 
+    /// A set of `count` points whose strata too are each pixel's own: for what is paired with points of another set.
+    #[must_use]
+    pub fn unshared(count: u32) -> Self {
+        Self { mask: [0; 2], ..Self::new(count, 0) }
+    }
+
     /// Number of points.
     #[must_use]
     pub fn len(&self) -> usize {

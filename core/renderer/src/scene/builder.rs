@@ -10,7 +10,8 @@ use super::record::{
     CameraRecord, LampRecord, LampShape, MaterialRecord, ObjectInfo, WorldRecord, matrix, visibility,
 };
 use super::{
-    Camera, Lamp, Material, MaterialProgram, Mesh, Object, Problem, Projection, Scene, SceneSpace, World,
+    Camera, Lamp, Lens, Material, MaterialProgram, Mesh, Object, Problem, Projection, Scene, SceneSpace,
+    World,
 };
 use crate::color::Rgb;
 use crate::error::RenderError;
@@ -107,7 +108,7 @@ impl SceneBuilder {
             mesh,
             world_from_object: transform,
             materials,
-            visibility: visible_to & visibility::ALL,
+            visibility: visible_to & (visibility::ALL | visibility::HOLDOUT),
             info: ObjectInfo::default(),
         });
         Ok(self.objects.len() - 1)
@@ -311,13 +312,19 @@ fn place_camera(record: &CameraRecord, space: &SceneSpace) -> Result<Camera, Ren
     };
     #[expect(clippy::cast_possible_truncation, reason = "clip distances need no more than f32")]
     let clip = record.clip.map(|d| (d * space.scale) as f32);
+    let lens = match &record.lens {
+        Some(lens) => Lens::new(lens, space.scale).map_err(fault)?,
+        None => None,
+    };
     Ok(Camera {
+        name: record.name.clone(),
         projection: record.projection,
         scene_from_camera: DAffine3::from_cols(x, y, z, origin),
         window: record.window.map(|v| v * length),
         resolution: record.resolution,
         region: record.region,
         clip,
+        lens,
     })
 }
 
@@ -363,6 +370,10 @@ fn place_lamp(record: LampRecord, space: &SceneSpace, problems: &mut Problems) -
         && !(size[0] > 0.0 && size[1] > 0.0)
     {
         problems.add(&record.name, "its size is zero; the lamp is left out", 1);
+        return None;
+    }
+    if matches!(shape, LampShape::Spot { .. }) && scales.x.min(scales.y) <= 0.0 {
+        problems.add(&record.name, "its scale is zero across its cone; the lamp is left out", 1);
         return None;
     }
     let is_sun = matches!(shape, LampShape::Sun { .. });

@@ -6,6 +6,7 @@
 
 mod builder;
 mod layer;
+mod lens;
 mod mesh;
 pub mod record;
 
@@ -15,6 +16,7 @@ use glam::{DAffine3, DVec3, Vec3};
 
 pub use builder::SceneBuilder;
 pub use layer::CornerLayer;
+pub use lens::Lens;
 pub use mesh::MeshArrays;
 pub use record::{LampShape, ObjectInfo, Projection, visibility};
 
@@ -88,6 +90,12 @@ pub struct Object {
 }
 
 impl Object {
+    /// True where camera rays see a hole in the picture.
+    #[must_use]
+    pub const fn is_holdout(&self) -> bool {
+        self.visibility & visibility::HOLDOUT != 0
+    }
+
     /// Material of triangle `primitive`; slots past the last use the last, as Blender does.
     #[must_use]
     pub fn material(&self, primitive: usize) -> usize {
@@ -156,6 +164,8 @@ pub struct Lamp {
 /// The camera in scene space.
 #[derive(Debug, Clone)]
 pub struct Camera {
+    /// Name, for messages.
+    pub name: String,
     /// Projection.
     pub projection: Projection,
     /// Camera to scene, without scale.
@@ -168,6 +178,8 @@ pub struct Camera {
     pub region: [u32; 4],
     /// Near and far clip distance along the view axis, in scene units.
     pub clip: [f32; 2],
+    /// Its lens; `None` for a pinhole.
+    pub lens: Option<Lens>,
 }
 
 /// Light from outside the scene.

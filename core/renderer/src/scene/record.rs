@@ -7,6 +7,8 @@ use serde::Deserialize;
 use crate::color::Rgb;
 use crate::shader::{Instruction, Register};
 
+pub use super::lens::LensRecord;
+
 /// Ray kinds an object can be hidden from; the bits are Embree's ray mask.
 pub mod visibility {
     /// Rays from the camera.
@@ -21,6 +23,8 @@ pub mod visibility {
     pub const SHADOW: u32 = 16;
     /// Proxy geometry of lamps: never set by the host.
     pub const LAMP: u32 = 32;
+    /// No kind of ray: camera rays see a hole in the picture where the object is.
+    pub const HOLDOUT: u32 = 64;
     /// Everything a mesh object may be seen by.
     pub const ALL: u32 = CAMERA | DIFFUSE | GLOSSY | TRANSMISSION | SHADOW;
 }
@@ -346,7 +350,7 @@ pub enum Projection {
     Orthographic,
 }
 
-/// A camera without lens effects.
+/// A camera.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CameraRecord {
@@ -364,6 +368,9 @@ pub struct CameraRecord {
     pub region: [u32; 4],
     /// Near and far clip distance along the view axis (m).
     pub clip: [f64; 2],
+    /// Its lens; without one it is a pinhole.
+    #[serde(default)]
+    pub lens: Option<LensRecord>,
 }
 
 /// Light from everywhere outside.

@@ -70,6 +70,8 @@ pub(crate) fn scene(lamps: Vec<Lamp>, objects: Vec<Object>, world_radiance: f32)
         textures: Vec::new(),
         lamps,
         camera: Camera {
+            name: "camera".into(),
+            lens: None,
             projection: Projection::Perspective,
             scene_from_camera: DAffine3::IDENTITY,
             window: [-1.0, 1.0, -1.0, 1.0],

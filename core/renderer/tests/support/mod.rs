@@ -184,6 +184,7 @@ pub(crate) fn camera(from: DVec3, at: DVec3, half_width: f64, pixels: u32) -> Ca
         resolution: [pixels, pixels],
         region: [0, 0, pixels, pixels],
         clip: [0.0, 1e12],
+        lens: None,
     }
 }
 
@@ -252,8 +253,14 @@ impl Room {
             let shape = LampShape::Rectangle { size, spread: std::f32::consts::PI };
             builder.add_lamp(lamp(shape, self.power / self.lamps as f32, place(0.0, 0.0, 0.95)));
         }
-        builder.set_camera(camera(place(-0.8, -0.7, 0.3), place(0.3, 0.3, -0.3), 0.9, self.pixels));
+        builder.set_camera(self.camera());
         builder
+    }
+
+    /// In a corner of the room.
+    pub(crate) fn camera(&self) -> CameraRecord {
+        let place = |x: f64, y: f64, z: f64| self.placement().transform_point3(DVec3::new(x, y, z));
+        camera(place(-0.8, -0.7, 0.3), place(0.3, 0.3, -0.3), 0.9, self.pixels)
     }
 
     pub(crate) fn builder(&self) -> SceneBuilder {

@@ -1,0 +1,43 @@
+"""Why a feature does not agree, or is not compared. A reason counts only while its feature fails."""
+
+EXCLUSIONS: dict[str, str] = {
+    "path/coated_emitter": "Cycles has two answers: it dims emission under a coat where a ray meets it, not where it "
+    "samples it as a light; here both are dimmed",
+}
+"""By feature: known reasons for a difference."""
+
+_AS_DIFFUSE = "not supported yet; Diffuse BSDF is used instead, with a warning"
+_LEFT_OUT = "not supported yet; left out, with a warning"
+_TYPICAL = "not supported yet; a typical value is used instead, with a warning"
+
+NOT_RENDERED: dict[str, str] = {
+    "shader/Translucent BSDF": _AS_DIFFUSE,
+    "shader/Sheen BSDF": _AS_DIFFUSE,
+    "shader/Toon BSDF": _AS_DIFFUSE,
+    "shader/Hair BSDF": _AS_DIFFUSE,
+    "shader/Subsurface Scattering": _AS_DIFFUSE,
+    "shader/Holdout": "not supported yet; black is used instead, with a warning",
+    "shader/volumes": _LEFT_OUT,
+    "shader/Principled BSDF, Sheen": _LEFT_OUT,
+    "shader/Principled BSDF, Subsurface": _LEFT_OUT,
+    "shader/Principled BSDF, Anisotropic": _LEFT_OUT,
+    "shader/Principled BSDF, Thin Film": _LEFT_OUT,
+    "shader/Principled BSDF, Diffuse Roughness": _LEFT_OUT,
+    "shader/Principled BSDF, Coat Normal": "not supported yet; Normal is used instead, with a warning",
+    "shader/Metallic BSDF, Physical Conductor": "not supported yet; F82 is used instead, with a warning",
+    "shader/Mix Shader of shaders with different normals": "one Normal counts for the whole material, with a warning",
+    "lamp/spot of scale 0": "its cone has no width in either engine; left out, with a warning",
+    "node/Image Texture, sequences and movies": _TYPICAL,
+    "node/Image Texture, UDIM tiles": _TYPICAL,
+    "node/Image Texture, sphere and tube projection": _TYPICAL,
+    "node/Mapping of type Texture, inputs that vary": _TYPICAL,
+    "node/Texture Coordinate, Window": _TYPICAL,
+    "node/Geometry, Tangent, Pointiness and Random Per Island": _TYPICAL,
+    "node/Light Path, lengths and depths": _TYPICAL,
+    "node/Voronoi Texture, one and four dimensions, Detail, N-Sphere Radius": _TYPICAL,
+    "node/Gabor Texture": _TYPICAL,
+    "node/IES Texture": _TYPICAL,
+    "node/Blackbody of a temperature that varies": _TYPICAL,
+    "node/Vector Displacement": _LEFT_OUT,
+}
+"""By feature: what takes its place. The warning names material and node."""

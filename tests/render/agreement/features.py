@@ -1,0 +1,33 @@
+"""What is compared: every node, every kind of lamp, every simple material, and ways of light."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import bpy
+
+from tests.render import cases, node_cases, path_cases
+
+
+@dataclass(frozen=True)
+class Feature:
+    """One thing that both engines should show alike, alone in a scene."""
+
+    name: str
+    """Its group and its own name, such as `lamp/sun`."""
+    build: Callable[[], bpy.types.Scene]
+    box_filter: bool = False
+
+
+def features() -> list[Feature]:
+    """All that are compared, group by group."""
+    return [
+        *(Feature(case, partial(cases.build, case)) for case in cases.CASES),
+        *(Feature(f"path/{name}", partial(path_cases.build, name)) for name in path_cases.PATHS),
+        *(
+            Feature(f"node/{name}", partial(node_cases.node_scene, case), box_filter=True)
+            for name, case in node_cases.NODES.items()
+        ),
+    ]

@@ -1,0 +1,149 @@
+"""Tiny scenes for ways of light that need more than a ball and a lamp: several bounces, mirrors in mirrors, panes.
+
+As in `cases.py` there is a floor and, where nothing else is said, the lamp is large, so that a path tracer finds it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import bpy
+
+from scenes import common
+from tests.render import cases
+from tests.render.cases import BLUE, GOLD, TINT, Surface, joined, shader
+
+MIRROR = shader("BsdfGlossy", Color=(0.9, 0.9, 0.9), Roughness=0.0)
+RED = (0.7, 0.15, 0.1)
+
+
+def add_polygons(name: str, polygons: Sequence[Sequence[common.Point]], surface: Surface) -> bpy.types.Object:
+    """Polygons of one surface."""
+    material, tree, output = common.new_material(name)
+    tree.links.new(surface(tree), output)
+    return common.add_polygons(name, polygons, [material])
+
+
+def textured(kind: str, strength: float) -> Surface:
+    """Light of a checkered or noisy color, by position."""
+
+    def add(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
+        pattern, made = tree.nodes.new(f"ShaderNode{kind}"), tree.nodes.new("ShaderNodeEmission")
+        place = tree.nodes.new("ShaderNodeTexCoord")
+        tree.links.new(place.outputs["Object"], pattern.inputs["Vector"])
+        pattern.inputs["Scale"].default_value = 1.0
+        if kind == "TexChecker":
+            pattern.inputs["Color1"].default_value = (1.0, 0.8, 0.5, 1.0)
+            pattern.inputs["Color2"].default_value = (0.0, 0.02, 0.05, 1.0)
+        tree.links.new(pattern.outputs["Color"], made.inputs["Color"])
+        made.inputs["Strength"].default_value = strength
+        return made.outputs[0]
+
+    return add
+
+
+def perforated() -> Surface:
+    """A checkered mask of Transparent and Diffuse."""
+    mixed = joined("MixShader", shader("BsdfTransparent"), shader("BsdfDiffuse", Color=RED))
+
+    def add(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
+        output = mixed(tree)
+        place, pattern = tree.nodes.new("ShaderNodeTexCoord"), tree.nodes.new("ShaderNodeTexChecker")
+        pattern.inputs["Scale"].default_value = 2.0
+        tree.links.new(place.outputs["Object"], pattern.inputs["Vector"])
+        tree.links.new(pattern.outputs["Fac"], output.node.inputs[0])
+        return output
+
+    return add
+
+
+def _wall(x: float = 0.0, y: float = 0.0) -> list[common.Point]:
+    """A square of 4 m that stands on the floor: across at depth y, or along at x."""
+    if x:
+        return [(x, -2.0, 0.0), (x, 2.0, 0.0), (x, 2.0, 4.0), (x, -2.0, 4.0)]
+    return [(-2.0, y, 0.0), (2.0, y, 0.0), (2.0, y, 4.0), (-2.0, y, 4.0)]
+
+
+def _pane(half: float, z: float) -> list[common.Point]:
+    return [(-half, -half, z), (half, -half, z), (half, half, z), (-half, half, z)]
+
+
+def _room() -> None:
+    add_polygons("Red", [_wall(x=-1.3)], shader("BsdfDiffuse", Color=RED))
+    add_polygons("Blue", [_wall(x=1.3)], shader("BsdfDiffuse", Color=BLUE))
+    add_polygons("Back", [_wall(y=1.5)], shader("BsdfDiffuse", Color=(0.8, 0.8, 0.8)))
+    cases.add_ball(shader("BsdfDiffuse", Color=(0.7, 0.7, 0.7)))
+    cases.add_lamp(cases.MATERIAL_LAMP)
+
+
+def _ball_before_a_mirror(surface: Surface) -> Callable[[], None]:
+    def add() -> None:
+        add_polygons("Mirror", [_wall(y=1.2)], MIRROR)
+        cases.add_ball(surface)
+        cases.add_lamp(cases.MATERIAL_LAMP)
+
+    return add
+
+
+def _below_a_pane(surface: Surface) -> Callable[[], None]:
+    """A pane between the lamp and a diffuse ball."""
+
+    def add() -> None:
+        add_polygons("Pane", [_pane(1.5, 2.5)], surface)
+        cases.add_ball(shader("BsdfDiffuse", Color=BLUE))
+        cases.add_lamp(cases.MATERIAL_LAMP)
+
+    return add
+
+
+def _behind_a_pane() -> None:
+    """A diffuse ball behind a pane of glass, 5 cm thick: two faces that refract."""
+    low, high = (-1.2, -1.6, 0.02), (1.2, -1.55, 2.5)
+    glass = shader("BsdfGlass", Color=TINT, Roughness=0.0, IOR=1.45)
+    add_polygons("Pane", common.box_faces(low, high), glass)
+    cases.add_ball(shader("BsdfDiffuse", Color=BLUE))
+    cases.add_light("world")
+
+
+def _block_of_glass() -> None:
+    """Its sides mirror from within: total inner reflection."""
+    glass = shader("BsdfGlass", Color=TINT, Roughness=0.0, IOR=1.6)
+    add_polygons("Block", common.box_faces((-0.7, -0.5, 0.01), (0.7, 0.5, 1.2)), glass)
+    cases.add_light("world")
+
+
+def _below_an_emitter(surface: Surface) -> Callable[[], None]:
+    def add() -> None:
+        cases.add_ball(shader("BsdfDiffuse", Color=BLUE))
+        add_polygons("Panel", [_pane(2.0, 2.5)], surface)
+
+    return add
+
+
+PATHS: dict[str, Callable[[], None]] = {
+    "diffuse_room": _room,
+    "mirror_in_mirror": _ball_before_a_mirror(MIRROR),
+    "glossy_in_mirror": _ball_before_a_mirror(shader("BsdfGlossy", Color=GOLD, Roughness=0.3)),
+    "coat_in_mirror": _ball_before_a_mirror(
+        shader("BsdfPrincipled", Base_Color=BLUE, Roughness=0.6, Coat_Weight=1.0, Coat_Roughness=0.0)
+    ),
+    "tinted_shadow": _below_a_pane(shader("BsdfTransparent", Color=(0.9, 0.3, 0.1))),
+    "alpha_shadow": _below_a_pane(shader("BsdfPrincipled", Base_Color=RED, Alpha=0.4)),
+    "perforated_shadow": _below_a_pane(perforated()),
+    "thin_glass": _behind_a_pane,
+    "total_inner_reflection": _block_of_glass,
+    "checkered_emitter": _below_an_emitter(textured("TexChecker", 4.0)),
+    "noisy_emitter": _below_an_emitter(textured("TexNoise", 3.0)),
+    "coated_emitter": _below_an_emitter(
+        shader("BsdfPrincipled", Base_Color=BLUE, Emission_Color=GOLD, Emission_Strength=2.0, Coat_Weight=1.0)
+    ),
+}
+"""By name: what stands on the floor, and the light."""
+
+
+def build(name: str) -> bpy.types.Scene:
+    """The scene of one of `PATHS`, in place of whatever Blender holds."""
+    scene = common.start_empty_file()
+    cases.add_floor_and_camera()
+    PATHS[name]()
+    return scene
