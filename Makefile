@@ -10,7 +10,7 @@ HOST := $(shell for p in python3 python3.13 python3.11; do $$p -c '' 2>/dev/null
 TOOLS = $(if $(HOST),$(HOST),$(error Python 3.11 or 3.13 is needed, and none runs here)) -m tools
 
 .DEFAULT_GOAL := help
-.PHONY: help render test lint bench tables agreement extension lock clean
+.PHONY: help render test hard fuzz lint bench tables agreement extension lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -20,6 +20,12 @@ render: ## render SCENE to out/ as EXR, PNG and JSON: make render [SCENE=scenes/
 
 test: ## every test, on every Blender this machine's Pythons allow: make test [BPY=5.0.1] [ARGS="-k name"]
 	@$(TOOLS) test --bpy "$(BPY)" $(ARGS)
+
+hard: ## the hard cases, heavy ones too, into docs/stability.md and docs/stability.json
+	@$(TOOLS) hard --bpy "$(BPY)" $(ARGS)
+
+fuzz: ## thousands of inputs that nobody meant, through every public door
+	@$(TOOLS) fuzz --bpy "$(BPY)" $(ARGS)
 
 lint: ## format, clippy, ruff, types, stub against binary, layers
 	@$(TOOLS) lint

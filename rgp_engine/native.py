@@ -2,6 +2,7 @@
 
 import importlib
 import importlib.util
+import os
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -51,6 +52,15 @@ def versions() -> dict[str, str]:
     """Versions of the native parts."""
     module = core()
     return {"rgp_core": module.__version__, "embree": module.embree_version(str(embree_library()))}
+
+
+def memory_allowed() -> int:
+    """Memory (MiB) a render may take when the user sets no limit: 90 % of the machine's; 0 where that is unknown."""
+    try:
+        total = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, OSError, ValueError):
+        return 0  # Windows has no sysconf
+    return max(0, int(0.9 * total) >> 20)
 
 
 def embree_library() -> Path:

@@ -73,7 +73,10 @@ class RenderSession:
         scene = exported.finish((b_result.resolution_x, b_result.resolution_y))
         self._log.add_records(scene.problems)
         settings = core_settings(self._b_depsgraph.scene_eval)
-        core_session = native.core().Session(scene, settings, str(native.embree_library()))
+        machine = settings.get("render", {})
+        limit = machine.get("memory_limit") or native.memory_allowed()
+        limited = {**settings, "render": {**machine, "memory_limit": limit}}
+        core_session = native.core().Session(scene, limited, str(native.embree_library()))
         self._error_target = settings["gather"]["error_target"]
         core_session.start()
         try:
@@ -84,7 +87,10 @@ class RenderSession:
         finally:
             self._cancelled = not core_session.finish()
         _write_passes(core_session, b_result)
-        self._stats = self._complete(core_session.stats(), exported.seconds, settings)
+        core_stats = core_session.stats()
+        for warning in core_stats["warnings"]:
+            self._log.add("Render", warning)
+        self._stats = self._complete(core_stats, exported.seconds, settings)
 
     def _watch(self, core_session: "rgp_core.Session", b_result: Any) -> None:
         """Until the render has ended: obeys Esc, shows progress, and the picture as it fills in."""

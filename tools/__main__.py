@@ -1,6 +1,6 @@
 """The commands behind the Makefile: `python3 -m tools COMMAND`.
 
-COMMAND is render, test, lint, bench, tables, agreement, extension or clean.
+COMMAND is render, test, hard, fuzz, lint, bench, tables, agreement, extension or clean.
 """
 
 from __future__ import annotations
@@ -56,6 +56,22 @@ def test(options: argparse.Namespace) -> None:
     if failed:
         sys.exit(f"error: failed: {', '.join(failed)}")
     say(f"every test passed: cargo test, and pytest with bpy {', '.join(bpys)}")
+
+
+def hard(options: argparse.Namespace) -> None:
+    """Every hard case with the edge it breaks at, into docs/stability.md and docs/stability.json."""
+    python = make_blender(available_bpys(options.bpy)[-1])
+    pytest = [python, "-m", "pytest", "tests/hard", *options.more]
+    if timed("hard cases", pytest, ROOT, RGP_STABILITY=str(ROOT / "docs")):
+        sys.exit("error: a hard case failed; docs/stability.md says which")
+
+
+def fuzz(options: argparse.Namespace) -> None:
+    """Random input through the scene builder, records, settings, textures and the node compiler."""
+    python = make_blender(available_bpys(options.bpy)[-1])
+    pytest = [python, "-m", "pytest", "tests/hard/test_hostile.py", *options.more]
+    if timed("hostile input", pytest, ROOT, RGP_EXAMPLES="3000"):
+        sys.exit("error: some input was not met with a message")
 
 
 def timed(name: str, command: Command, directory: Path, **variables: str) -> int:
@@ -127,7 +143,7 @@ def main() -> None:
     """Reads the command line and runs one command."""
     parser = argparse.ArgumentParser(prog="python3 -m tools", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
-    for command in (render, test, lint, bench, tables, agreement, extension, clean):
+    for command in (render, test, hard, fuzz, lint, bench, tables, agreement, extension, clean):
         subparser = commands.add_parser(command.__name__, help=command.__doc__)
         subparser.set_defaults(run=command)
         subparser.add_argument(

@@ -31,6 +31,8 @@ class Job:
     bins: str = "8x16"
     finest: int = 128
     """Cells along the longest side, on the finest level."""
+    adaptive: int = 2
+    """Levels of finer cells below that."""
     seed: int = 0
 
     @property
@@ -38,7 +40,11 @@ class Job:
         """For the core."""
         return {
             "photon_pass": {"photon_count": self.photons},
-            "pyramid": {"finest_resolution": self.finest, "bins": self.bins},
+            "pyramid": {
+                "finest_resolution": self.finest,
+                "adaptive_levels": self.adaptive,
+                "bins": self.bins,
+            },
             "gather": {
                 "estimator": self.estimator,
                 "rays": self.rays,

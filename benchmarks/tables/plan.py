@@ -130,7 +130,7 @@ def scene_plan(subject: Subject, scale: Scale, photons: Render, path: Render) ->
         for bins in scale.bins:
             table1[f"{estimator} {bins}"] = replace(base, estimator=estimator, bins=bins)
         for finest in scale.finest:
-            table2[f"{estimator} {finest}"] = replace(base, estimator=estimator, finest=finest)
+            table2[f"{estimator} {finest}"] = replace(base, estimator=estimator, finest=finest, adaptive=0)
     table3 = {name: replace(base, estimator=name) for name in (PHOTON_MAP, PYRAMID, PYRAMID_2006, *OTHERS)}
     table3[PATH] = replace(base, estimator=PATH, photons=0)
     many = {name: replace(table3[name], rays=scale.many_rays) for name in (PHOTON_MAP, PYRAMID)}

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from ..files import whole_file
 from ..plot import Axis, Chart, Label, Level, Series, draw_chart, number_text, rasterize, to_svg, write_png
 from ..plot.chart import BLUE, GREY, ORANGE
 from .front import TARGETS, Row, cheapest
@@ -17,8 +18,10 @@ _PIXELS_PER_UNIT = 2.0
 def write_figure(sweep: Sweep, folder: Path) -> None:
     """Draws time against error of all rows into the folder. Raises OSError."""
     drawing = draw_chart(_chart(sweep))
-    (folder / SVG).write_text(to_svg(drawing), encoding="utf-8")
-    write_png(folder / PNG, rasterize(drawing, _PIXELS_PER_UNIT))
+    with whole_file(folder / SVG) as part:
+        part.write_text(to_svg(drawing), encoding="utf-8")
+    with whole_file(folder / PNG) as part:
+        write_png(part, rasterize(drawing, _PIXELS_PER_UNIT))
 
 
 def _chart(sweep: Sweep) -> Chart:

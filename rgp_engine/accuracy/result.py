@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ..files import whole_file
 from .front import TARGETS, Row, cheapest, pareto_front
 from .quality import Quality
 
@@ -52,9 +53,8 @@ class Sweep:
 
     def write(self, folder: Path) -> None:
         """Writes the file, whole at every moment. Raises OSError."""
-        partial = folder / f"{FILE}.part"
-        partial.write_text(json.dumps(self._content(), indent=2) + "\n")
-        partial.replace(folder / FILE)
+        with whole_file(folder / FILE) as part:
+            part.write_text(json.dumps(self._content(), indent=2) + "\n")
 
     @classmethod
     def read(cls, folder: Path) -> "Sweep":

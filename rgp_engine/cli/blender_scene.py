@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import register
+from ..files import whole_file
 from . import CommandError
 from .assign import assign
 
@@ -112,9 +113,12 @@ def save_png(b_scene: Any, path: Path) -> None:
     _set_format(b_settings, "IMAGE", "PNG", "8")
     b_settings.color_mode = "RGBA" if b_scene.render.film_transparent else "RGB"
     try:
-        bpy.data.images["Render Result"].save_render(str(path.absolute()), scene=b_scene)
+        with whole_file(path) as part:
+            bpy.data.images["Render Result"].save_render(str(part), scene=b_scene)
     except RuntimeError as error:
         raise CommandError(f"{path} cannot be written: {_reason(error)}") from error
+    except OSError as error:
+        raise CommandError(f"{path} cannot be written: {error.strerror}") from error
 
 
 def versions() -> dict[str, str]:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..files import whole_file
 from . import CommandError
 
 Picture = npt.NDArray[np.float32]
@@ -63,6 +64,18 @@ def write(path: Path, picture: Picture) -> None:
     name = "RGBA" if picture.shape[2] == 4 else "RGB"
     pixels = np.ascontiguousarray(picture, np.float32)
     try:
-        OpenEXR.File(header, {name: pixels}).write(str(path))
+        with whole_file(path) as part:
+            OpenEXR.File(header, {name: pixels}).write(str(part))
+            _check_complete(part)
     except Exception as error:
         raise CommandError(f"{path} cannot be written: {error}") from error
+
+
+def _check_complete(path: Path) -> None:
+    """Raises OSError when the disk was too full: OpenEXR itself does not always say."""
+    import OpenEXR
+
+    try:
+        OpenEXR.File(str(path)).channels()
+    except Exception as error:
+        raise OSError("the file is incomplete; is the disk full?") from error

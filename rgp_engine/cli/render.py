@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from ..files import whole_file
 from ..report import last_outcome
 from ..stats import effect_rows, rows
 from . import CommandError, blender_scene, exr
@@ -62,8 +63,16 @@ def run(options: argparse.Namespace) -> None:
     if options.png:
         blender_scene.save_png(b_scene, options.png)
     if options.stats:
-        options.stats.write_text(json.dumps(stats, indent=2) + "\n")
+        _write_stats(options.stats, stats)
     _print_table(stats)
+
+
+def _write_stats(path: Path, stats: dict[str, Any]) -> None:
+    try:
+        with whole_file(path) as part:
+            part.write_text(json.dumps(stats, indent=2) + "\n")
+    except OSError as error:
+        raise CommandError(f"{path} cannot be written: {error.strerror}") from error
 
 
 def _render(b_scene: Any, *, wants_indirect: bool) -> dict[str, Picture]:

@@ -16,7 +16,7 @@ def material_index(context: ExportContext, b_material: Any | None) -> int:
     if key not in context.materials:
         name = "(no material)" if b_material is None else b_material.name
         compiler = Compiler(context, name)
-        record = _default_record() if b_material is None else material_record(compiler, b_material)
+        record = _default_record() if b_material is None else _record_or_default(compiler, b_material)
         context.emits |= emits(record)
         index = context.builder.add_material(record)
         context.materials[key] = index
@@ -24,6 +24,14 @@ def material_index(context: ExportContext, b_material: Any | None) -> int:
         if compiler.asks_object:
             context.asking_objects.add(index)
     return context.materials[key]
+
+
+def _record_or_default(compiler: Compiler, b_material: Any) -> dict[str, Any]:
+    try:
+        return material_record(compiler, b_material)
+    except (RecursionError, MemoryError):  # Blender's answer to too deep a recursion is the second
+        compiler.report("its nodes form a circle, or too long a chain; Blender's default gray is used")
+        return _default_record()
 
 
 def material_record(compiler: Compiler, b_material: Any) -> dict[str, Any]:

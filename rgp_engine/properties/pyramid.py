@@ -28,6 +28,16 @@ class RGPPyramidSettings(bpy.types.PropertyGroup):
         soft_min=16,
         soft_max=512,
     )
+    adaptive_levels: bpy.props.IntProperty(
+        name="Adaptive Levels",
+        description=(
+            "Levels with cells finer than that, made where gather rays end nearby and photons are plenty; "
+            "0 for equal cells everywhere"
+        ),
+        default=2,
+        min=0,
+        max=3,
+    )
     bins: bpy.props.IntVectorProperty(
         name="Direction Bins",
         description="Direction bins of glossy cells, elevation x azimuth; diffuse cells have none",

@@ -23,3 +23,13 @@ class RGPRenderSettings(bpy.types.PropertyGroup):
         min=0,
         max=2_147_483_647,
     )
+    memory_limit: bpy.props.IntProperty(
+        name="Memory Limit",
+        description=(
+            "Memory a render may take: past it cells are made coarser, or the render is refused; "
+            "0 takes nine tenths of the machine's"
+        ),
+        default=0,
+        min=0,
+        max=16_777_216,
+    )

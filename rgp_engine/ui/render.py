@@ -27,7 +27,7 @@ class RGP_PT_pyramid(EnginePanel, Panel):
     def draw(self, context: Any) -> None:
         """Draws the panel."""
         b_pyramid = context.scene.rgp.pyramid
-        names = ("finest_resolution", "photons_per_cell", "normal_classes")
+        names = ("finest_resolution", "adaptive_levels", "photons_per_cell", "normal_classes")
         draw_settings(self.layout, b_pyramid, *names)
         column = self.layout.column(align=True)
         column.prop(b_pyramid, "bins", index=0, text="Bins Elevation")
@@ -79,7 +79,7 @@ class RGP_PT_performance(ClosedEnginePanel, Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        draw_settings(self.layout, context.scene.rgp.render, "threads", "seed")
+        draw_settings(self.layout, context.scene.rgp.render, "threads", "seed", "memory_limit")
         draw_settings(self.layout, context.scene.rgp.film, "tile_size")
 
 

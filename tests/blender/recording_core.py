@@ -121,7 +121,12 @@ class Session:
         return np.full((height, width, channels), value, np.float32)
 
     def stats(self) -> dict[str, Any]:
-        return {"seconds": {"gather": 1.0, "total": 1.5}, "rays": {"camera": 7}, "memory_peak_bytes": 5 << 20}
+        return {
+            "seconds": {"gather": 1.0, "total": 1.5},
+            "rays": {"camera": 7},
+            "memory_peak_bytes": 5 << 20,
+            "warnings": [],
+        }
 
     def finish(self) -> bool:
         return not self._is_cancelled

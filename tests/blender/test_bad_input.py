@@ -18,6 +18,19 @@ def test_no_camera(scene):
         bpy.ops.render.render()
 
 
+def test_nodes_in_a_circle(scene, rendered, problems):
+    build.lit_room()
+    b_material, b_tree, b_output = build.material()
+    bpy.data.objects["Floor"].data.materials.append(b_material)
+    one, other = (b_tree.nodes.new("ShaderNodeInvert") for _ in range(2))
+    b_diffuse = b_tree.nodes.new("ShaderNodeBsdfDiffuse")
+    for b_from, b_to in ((one, other), (other, one), (one, one), (one, b_diffuse)):
+        b_tree.links.new(b_from.outputs[0], b_to.inputs["Color"])
+    build.connect(b_tree, b_diffuse, b_output, "Surface")
+    assert rendered()[..., :3].max() > 0.0
+    assert any("circle" in text for text in problems()), problems()
+
+
 def test_no_light(scene, rendered, problems):
     build.add_camera()
     build.add_object("Floor", build.quad())

@@ -65,7 +65,7 @@ def test_picture_indirect_png_and_stats(blend, tmp_path):
     assert pixels(files[1]).shape == (20, 40, 3)
     assert files[3].read_bytes().startswith(b"\x89PNG")
     stats = json.loads(files[2].read_text())
-    assert stats["settings"]["render"] == {"threads": 1, "seed": 5}
+    assert stats["settings"]["render"] == {"threads": 1, "seed": 5, "memory_limit": 0}
     assert stats["settings"]["gather"]["rays"] == 4
     for word in (
         "Export time",

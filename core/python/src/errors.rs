@@ -41,6 +41,6 @@ pub(crate) fn to_python(error: CoreError) -> PyErr {
             Err(error) => error,
         }),
         CoreError::Embree(_) => EmbreeError::new_err(message),
-        CoreError::Cancelled | CoreError::Internal(_) => RenderError::new_err(message),
+        CoreError::Memory(_) | CoreError::Cancelled | CoreError::Internal(_) => RenderError::new_err(message),
     }
 }

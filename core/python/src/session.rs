@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 use rgp_renderer::error::RenderError as CoreError;
 use rgp_renderer::film::Film;
 use rgp_renderer::progress::Progress;
-use rgp_renderer::render::render;
+use rgp_renderer::render::{check_memory, render};
 use rgp_renderer::scene;
 use rgp_renderer::settings::RenderSettings;
 use rgp_renderer::stats::Stats;
@@ -47,6 +47,7 @@ impl Session {
     #[new]
     fn new(scene: &Scene, settings: &Bound<'_, PyDict>, embree_library: PathBuf) -> PyResult<Self> {
         let settings = parse_settings(settings)?;
+        check_memory(&scene.0, &settings).map_err(to_python)?;
         let [_, _, width, height] = scene.0.camera.region;
         let shared = Shared {
             film: Film::new(width, height, &settings.film),

@@ -11,6 +11,9 @@ pub enum RenderError {
     /// A setting that does not exist or is out of range.
     #[error("{0}")]
     Settings(String),
+    /// What would pass the memory limit.
+    #[error("{0}")]
+    Memory(String),
     /// The ray tracer failed.
     #[error(transparent)]
     Embree(rgp_embree::EmbreeError),

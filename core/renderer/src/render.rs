@@ -2,6 +2,7 @@
 
 mod aim;
 mod baselines;
+mod memory;
 mod openness;
 
 use std::path::Path;
@@ -29,6 +30,9 @@ use crate::scene::Scene;
 use crate::settings::{EstimatorKind, RenderSettings, Switch, parse_bins};
 use crate::shader::Texture;
 use crate::stats::{EstimatorStats, Stats, TextureCounts};
+
+use memory::Budget;
+pub use memory::check_memory;
 
 /// Renders `scene` into `film`, with Embree from the file `library`. `stats` grows as passes end, so that it is worth
 /// reading after a cancel too.
@@ -129,14 +133,20 @@ impl Work<'_> {
         let Work { lit, settings, progress, .. } = *self;
         progress.enter(Stage::Layout);
         let clock = Instant::now();
-        let layout = layout(lit, self.seen, settings, progress)?;
+        let [elevation, azimuth] = parse_bins(&settings.pyramid.bins)?;
+        let bins = lit.plan.direction_bins().then_some(DirectionBins { elevation, azimuth });
+        let wanted = settings.pyramid.finest_resolution;
+        let measure = |resolution| layout(lit, self.seen, settings, resolution, progress);
+        let budget = Budget::new(lit.accel.scene(), settings)?;
+        let (layout, resolution) = budget.fit(wanted, bins, measure)?;
+        if resolution < wanted {
+            stats.warnings.push(format!("the memory limit allows {resolution} cells instead of {wanted}"));
+        }
         stats.pyramid.cell_size =
             f64::from(layout.grid.levels[layout.grid.finest()].cell_size) / lit.accel.scene().space.scale;
         stats.seconds.pyramid = clock.elapsed().as_secs_f64();
         progress.check()?;
 
-        let [elevation, azimuth] = parse_bins(&settings.pyramid.bins)?;
-        let bins = lit.plan.direction_bins().then_some(DirectionBins { elevation, azimuth });
         // A single pass has nothing to be compared with and reads all photons.
         let sets = SETS.min(settings.gather.camera_samples as usize);
         let accumulator = Accumulator::new(&layout, lit.lights.total_flux().max_channel(), bins);
@@ -242,18 +252,19 @@ fn light<'a>(
     Ok(LitScene { accel, materials, lights, plan })
 }
 
-/// The cells, over what the camera and its gather rays see.
+/// The cells, `resolution` of them along what the camera and its gather rays see.
 fn layout(
     lit: &LitScene<'_>,
     seen: &[Reading],
     settings: &RenderSettings,
+    resolution: u32,
     progress: &Progress,
 ) -> Result<Layout, RenderError> {
     let scene = lit.accel.scene();
     let box_seen = seen_bounds(seen, scene.bounds);
     let bounds = scene.bounds.map(Vec3::as_dvec3);
     let world_origin = -scene.space.center * scene.space.scale;
-    let mut grid = Grid::new(box_seen, bounds, settings.pyramid.finest_resolution, world_origin);
+    let mut grid = Grid::new(box_seen, bounds, resolution, world_origin);
     grid.refine(seen, settings.pyramid.adaptive_levels);
     let classes =
         if settings.pyramid.normal_classes == "54" { NormalClasses::FiftyFour } else { NormalClasses::Six };

@@ -158,6 +158,8 @@ pub struct MachineSettings {
     pub threads: u32,
     /// Another seed gives another, equally good picture.
     pub seed: u32,
+    /// Memory (MiB) that picture, ray tracer and pyramid may take together; 0 sets no limit.
+    pub memory_limit: u32,
 }
 
 /// All knobs.
@@ -297,7 +299,7 @@ pub const KNOBS: &[Knob] = &[
     knob("photon_pass", "max_depth", int(1, 1000), "surfaces", "Surfaces a photon may visit before it is dropped; low values darken the picture"),
     knob("photon_pass", "aim", SWITCH, "", "Photons of suns and the world go where the picture looks; Auto: where most would miss it"),
     knob("pyramid", "finest_resolution", int(1, 1024), "cells", "Cells of the finest level along the longest side of what the camera and its gather rays see"),
-    knob("pyramid", "adaptive_levels", int(0, 3), "levels", "Levels with cells finer than that, made where gather rays end nearby; 0 for equal cells everywhere"),
+    knob("pyramid", "adaptive_levels", int(0, 3), "levels", "Levels with cells finer than that, made where gather rays end nearby and photons are plenty; 0 for equal cells everywhere"),
     knob("pyramid", "bins", Kind::Bins, "", "Direction bins of glossy cells, elevation x azimuth; diffuse cells have none"),
     knob("pyramid", "normal_classes", Kind::Enum { choices: &["6", "54"] }, "", "Directions that keep surfaces in one cell apart: the six faces of a cube, or nine parts of each"),
     knob("pyramid", "photons_per_cell", int(1, 1000), "photons", "A cell is read from its parent where the parent holds fewer than four times as many photons"),
@@ -326,6 +328,7 @@ pub const KNOBS: &[Knob] = &[
     knob("film", "tile_size", int(4, 4096), "pixels", "Edge of the tiles the picture is cut into; changes nothing in the picture"),
     knob("render", "threads", int(0, 1024), "threads", "Threads to use; 0 takes all; changes nothing in the picture"),
     knob("render", "seed", int(0, 2_147_483_647), "", "Another seed gives other noise"),
+    knob("render", "memory_limit", int(0, 16_777_216), "MiB", "Memory a render may take: past it cells are made coarser, or the render is refused; 0 takes nine tenths of the machine's"),
 ];
 
 /// Elevation and azimuth counts of `8x16`.

@@ -186,6 +186,8 @@ pub struct Stats {
     pub effects: Vec<EffectStats>,
     /// Pixels that came out NaN or infinite and were set to black.
     pub nonfinite_pixels: u64,
+    /// What was done otherwise than the settings ask, in words for the artist.
+    pub warnings: Vec<String>,
     /// Passes over the picture that are complete.
     pub passes: u32,
     /// Why there were no more.

@@ -115,6 +115,16 @@ impl Film {
         }
     }
 
+    /// Memory (bytes) that a film takes, what it copies for its readers included.
+    #[must_use]
+    pub fn bytes_for(width: u32, height: u32, settings: &FilmSettings) -> u64 {
+        let span = 2 * Filter::new(settings.filter, settings.filter_width).reach() + 1;
+        let spread = size_of::<[f32; CHANNELS]>() + 2 * span * size_of::<f32>();
+        let copy = 4 * size_of::<f32>();
+        let pixel = 2 * size_of::<Sums>() + size_of::<PixelSample>() + spread + copy;
+        u64::from(width) * u64::from(height) * pixel as u64
+    }
+
     /// Width and height (pixels).
     #[must_use]
     pub const fn size(&self) -> [usize; 2] {

@@ -13,6 +13,7 @@ use super::bins::{BinCorners, DirectionBins, LANES, Lanes};
 use super::layout::Layout;
 use crate::color::Rgb;
 use crate::math::{Frame, Side};
+use crate::sampling::{Rng, hash};
 
 /// Sets of photons.
 pub const SETS: usize = 2;
@@ -101,7 +102,7 @@ impl<'a> Accumulator<'a> {
             self.lost.fetch_add(1, Ordering::Relaxed);
             return None;
         };
-        self.add(&self.flux[level][place][set], flux);
+        self.add(&self.flux[level][place][set], flux, dither(p.to_array()));
         self.count[level][place].fetch_add(1, Ordering::Relaxed);
         self.deposited.fetch_add(1, Ordering::Relaxed);
         Some(Landing { level, place, set })
@@ -121,22 +122,23 @@ impl<'a> Accumulator<'a> {
             *sums = vec![[[0; LANES]; 3]; SETS * groups].into_boxed_slice();
         }
         let sums = &mut sums[landing.set * groups..][..groups];
+        let dither = dither(at);
         let directions = self.corners.directions(&frame, at);
         for (group, sums) in sums.iter_mut().enumerate() {
             let values = leaving.towards(&directions.group(group));
             for (sums, values) in sums.iter_mut().zip(&values) {
                 for i in 0..LANES {
-                    sums[i] = sums[i].wrapping_add(quanta(f64::from(values[i]) * per_quantum));
+                    sums[i] = sums[i].wrapping_add(quanta(f64::from(values[i]) * per_quantum + dither));
                 }
             }
         }
     }
 
-    fn add(&self, sums: &[AtomicI64; 3], values: Rgb) {
+    fn add(&self, sums: &[AtomicI64; 3], values: Rgb, dither: f64) {
         for (sum, value) in sums.iter().zip(values.0) {
-            let quanta = f64::from(value) * self.per_quantum;
             #[expect(clippy::cast_possible_truncation, reason = "quantised on purpose")]
-            sum.fetch_add((quanta + 0.5_f64.copysign(quanta)) as i64, Ordering::Relaxed);
+            let quanta = (f64::from(value) * self.per_quantum + dither).round() as i64;
+            sum.fetch_add(quanta, Ordering::Relaxed);
         }
     }
 
@@ -150,6 +152,19 @@ impl<'a> Accumulator<'a> {
     #[must_use]
     pub fn lost(&self) -> u64 {
         self.lost.load(Ordering::Relaxed)
+    }
+
+    /// Memory (bytes) that the accumulator of a layout takes at most, and the pyramid that is made of it.
+    #[must_use]
+    pub fn bytes_for(layout: &Layout, bins: Option<DirectionBins>) -> usize {
+        let cell = 2 * (size_of::<[[i64; 3]; SETS]>() + size_of::<u32>());
+        let cells: usize = layout.levels.iter().map(|level| level.index.len()).sum();
+        let Some(bins) = bins else { return cells * cell };
+        let bin_sums = SETS * bins.count().div_ceil(LANES) * size_of::<[[i64; LANES]; 3]>();
+        let with_bins = &layout.levels[..=layout.grid.base()];
+        let surfaces = with_bins.iter().flat_map(|level| &level.surfaces);
+        let glossy = surfaces.filter(|surface| surface.glossy_area > 0).count();
+        cells * (cell + size_of::<Mutex<GlossySums>>()) + glossy * 2 * bin_sums
     }
 
     /// Memory (bytes).
@@ -215,6 +230,13 @@ pub(super) struct Sums {
     /// Flux of one quantum of a cell, and of one quantum of a bin.
     pub(super) quantum: f64,
     pub(super) bin_quantum: f64,
+}
+
+/// A number in [-½, ½) that belongs to the photon, whatever thread it lands on. Added before rounding it keeps the mean of
+/// photons fainter than a quantum, such as those of a lamp of 10⁻⁶ W beside one of 10⁶ W.
+fn dither<const N: usize>(of: [f32; N]) -> f64 {
+    let bits = of.iter().fold(0, |bits, value| hash(bits, u64::from(value.to_bits())));
+    f64::from(Rng::new(bits).draw()) - 0.5
 }
 
 /// Rounds to an integer, in a way that becomes vector code; what is no number counts nothing.

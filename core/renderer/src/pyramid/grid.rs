@@ -336,4 +336,66 @@ mod tests {
         let difference = (boundary(&a, 0.03) - boundary(&b, 0.03)).abs();
         assert!(difference.min_element() < 1e-3 || difference.max_element() > 0.999, "{difference}");
     }
+
+    /// A block around what was read closely is refined once or twice, its neighbors are not; positions are found there at
+    /// the level that exists, and cells of all levels nest.
+    #[test]
+    fn blocks_are_refined_where_they_are_read_closely() {
+        let mut grid = grid();
+        let (base, size) = (grid.finest(), grid.base_cell_size());
+        let (once, twice, never) =
+            (Vec3::new(0.01, 0.0, 0.0), Vec3::new(-0.03, 0.0, 0.0), Vec3::new(0.03, 0.0, 0.0));
+        let reading = |p: Vec3, finer: f32| Reading { p, cell_size: size / finer };
+        let readings = [
+            reading(once, 2.0),
+            reading(once, 9.0),
+            reading(twice, 4.1),
+            reading(twice, 1000.0),
+            reading(never, 100.0),
+            reading(never, 1.0),
+            reading(Vec3::splat(0.49), 100.0),
+            reading(Vec3::splat(0.49), 100.0),
+        ];
+        grid.refine(&readings, 2);
+        assert_eq!(grid.finest(), base + 2);
+        let finest = grid.finest();
+        let located = |p: Vec3| grid.locate(grid.offset(p), finest).expect("inside");
+        for (p, deeper) in [(once, 1), (twice, 2), (never, 0)] {
+            let (level, cell) = located(p);
+            assert_eq!(level, base + deeper, "{p}");
+            let lattice = grid.levels[level].lattice(cell);
+            assert!(!grid.is_divided(level, lattice));
+            assert!((1..=deeper).all(|up| grid.is_divided(level - up, lattice >> up as i32)));
+            let above = (0..deeper)
+                .try_fold((level, cell), |(level, cell), _| Some((level - 1, grid.parent(level, cell)?)));
+            assert_eq!(above, grid.locate(grid.offset(p), base), "{p}");
+        }
+        assert!(located(Vec3::splat(0.49)).0 < base, "outside the box nothing is refined");
+    }
+
+    /// A block keeps the levels that most of its cells vote for, or that one cell needs.
+    #[test]
+    fn blocks_are_pruned_by_vote() {
+        let (a, b, c) = (Vec3::new(0.01, 0.0, 0.0), Vec3::new(-0.03, 0.0, 0.0), Vec3::new(0.03, 0.0, 0.0));
+        let mut grid = grid();
+        let base = grid.finest();
+        let readings = [a, a, b, b, c, c].map(|p| Reading { p, cell_size: 0.0 });
+        grid.refine(&readings, 2);
+        let at = |level: usize, p: Vec3| (level, grid.levels[level].cell(grid.offset(p)).expect("inside"));
+        let votes = [
+            (at(base, a), Vote::For),
+            (at(base + 1, a), Vote::Against),
+            (at(base, b), Vote::Against),
+            (at(base, b), Vote::Against),
+            (at(base, b), Vote::For),
+            (at(base + 1, b), Vote::For),
+            (at(base, c), Vote::Against),
+            (at(base, c), Vote::Needed),
+            (at(base + 1, c), Vote::For),
+        ];
+        let votes = votes.map(|((level, cell), vote)| (level, cell, vote));
+        grid.prune(votes.into_iter());
+        let depth = |p: Vec3| grid.locate(grid.offset(p), grid.finest()).expect("inside").0 - base;
+        assert_eq!([a, b, c].map(depth), [1, 0, 2]);
+    }
 }

@@ -8,6 +8,9 @@ use super::index::NO_BRICK;
 use super::{Cell, Pyramid};
 use crate::color::Rgb;
 
+/// Positions of hits are off by this at most, relative to the scene's size: some units in the last place.
+const ROUNDING: f32 = 4.0 * f32::EPSILON;
+
 /// A look-up of irradiance.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Place {
@@ -96,8 +99,21 @@ impl<'a> View<'a> {
                 self.find_finer(found, offset, class, level)
             }
             Some(found) => Some(found),
-            None => self.find_coarser(cell, class, level),
+            None => {
+                (self.find_across(offset, class, level)).or_else(|| self.find_coarser(cell, class, level))
+            }
         }
+    }
+
+    /// Across a border of cells, where rounding may have put a place of a surface that lies in the border itself.
+    fn find_across(&self, offset: Vec3, class: usize, level: usize) -> Option<&'a Cell> {
+        let nudge = Vec3::splat(ROUNDING * offset.abs().max_element().max(1.0));
+        [offset - nudge, offset + nudge].into_iter().find_map(|offset| {
+            let cell = self.pyramid.grid.levels[level].cell(offset)?;
+            let found = self.pyramid.levels[level].find(self.set, cell, class)?;
+            let split = found.is_mixed() && found.holds_enough();
+            if split { self.find_finer(found, offset, class, level) } else { Some(found) }
+        })
     }
 
     /// Below a mixed cell: the coarsest that is none or too poor in photons to be split, or the finest there is.
