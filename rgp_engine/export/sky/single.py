@@ -208,7 +208,7 @@ def single_scattering(elevation: float, air: Air) -> Array:
         scattered = (
             phases[..., :1] * density[..., :1] * _RAYLEIGH + phases[..., 1:] * density[..., 1:2] * _MIE
         )
-        lit = ~_in_shadow(place, sun)
+        lit = np.logical_not(_in_shadow(place, sun))
         spectrum += through * scattered * (_SUNLIGHT * (lit * step)[..., None])
     rgb = rgb_from_xyz(spectrum @ _XYZ * _STEP_NM)
     # The ground shows the horizon, ever darker.

@@ -12,7 +12,7 @@ use crate::effects_plan::Effect;
 use crate::estimator::{Estimator, Footprint};
 use crate::film::{BLOCK, PixelSample, TileRect};
 use crate::lit_scene::ray_kind;
-use crate::sampling::{PixelSeeds, Rng, hash};
+use crate::sampling::{PixelSeeds, Rng, hash, shuffled_point};
 use crate::scene::visibility;
 use crate::settings::GatherSampling;
 
@@ -117,16 +117,16 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             if px >= camera.region[2] || py >= camera.region[3] {
                 continue;
             }
-            let u = g.camera_set.point(self.sample as usize, key as u32);
+            let u = shuffled_point(self.sample, key as u32);
             let offset = [u[0] - 0.5, u[1] - 0.5];
             self.samples[lane] = PixelSample { offset, taken: true, ..Default::default() };
             let offset = DVec2::new(f64::from(offset[0]), f64::from(offset[1]));
             let position = DVec2::new(f64::from(frame_x), f64::from(frame_y)) + 0.5 + offset;
             let CameraRay { ray, reach, start } = match &g.lens {
                 None => camera_ray(camera, g.lit, position, None),
-                Some((lens, set)) => {
+                Some(lens) => {
                     let owner = self.traces.meter.enter(Effect::DepthOfField);
-                    let point = lens.point(set.point(self.sample as usize, hash(key, 4) as u32));
+                    let point = lens.point(shuffled_point(self.sample, hash(key, 4) as u32));
                     self.traces.meter.back(owner);
                     camera_ray(camera, g.lit, position, Some((lens, point)))
                 }

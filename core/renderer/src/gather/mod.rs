@@ -62,9 +62,8 @@ pub struct Gatherer<'a, E> {
     rays: u32,
     max_depth: u32,
     sampling: GatherSampling,
-    camera_set: StratifiedSet,
     /// The lens that camera rays pass through, and where.
-    lens: Option<(&'a Lens, StratifiedSet)>,
+    lens: Option<&'a Lens>,
     light_set: StratifiedSet,
     gather_set: StratifiedSet,
     /// Of a pixel: light samples against gather rays.
@@ -152,8 +151,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             rays: gather.rays,
             max_depth: gather.max_depth.max(E::LEAST_DEPTH),
             sampling: gather.sampling,
-            camera_set: StratifiedSet::unshared(gather.camera_samples),
-            lens: lens.map(|lens| (lens, StratifiedSet::unshared(gather.camera_samples))),
+            lens,
             light_set: set(gather.camera_samples * gather.light_samples, 2),
             gather_set: set(gather.rays, 3),
             shares: Shares {

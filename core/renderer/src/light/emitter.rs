@@ -8,9 +8,29 @@ use glam::{DAffine3, DVec3, Vec3};
 
 use super::cluster::Bounds;
 use super::select::Cdf;
-use super::{EmitterPoint, LightSample, Photon, is_in_reach, warp};
+use super::{LightSample, Photon, is_in_reach, warp};
 use crate::color::Rgb;
 use crate::scene::{Mesh, Object};
+
+/// A point that was chosen on an emissive mesh. Lights know the typical radiance of its material; where that differs from
+/// point to point or with the direction, the radiance that is really emitted replaces it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EmitterPoint {
+    /// Index into [`crate::scene::Scene::objects`].
+    pub object: u32,
+    /// Triangle of its mesh.
+    pub primitive: u32,
+    /// Weights of the triangle's second and third corner.
+    pub barycentric: [f32; 2],
+    /// What one unit of radiance counts there: of a photon's flux, or over the pdf of direct light.
+    pub per_radiance: f32,
+}
+
+impl EmitterPoint {
+    pub(super) fn chosen_with(self, probability: f32) -> Self {
+        Self { per_radiance: self.per_radiance / probability, ..self }
+    }
+}
 
 /// The emitting triangles of one object.
 #[derive(Clone, Debug)]

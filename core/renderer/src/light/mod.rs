@@ -34,6 +34,7 @@ use aim::Aim;
 pub use aim::Find;
 use cluster::Cluster;
 use distant::SceneBall;
+pub use emitter::EmitterPoint;
 use emitter::MeshEmitter;
 pub use environment::Environment;
 pub use proxy::LampProxy;
@@ -73,20 +74,6 @@ pub struct Emission {
     pub point: Option<EmitterPoint>,
 }
 
-/// A point that was chosen on an emissive mesh. Lights know the typical radiance of its material; where that differs from
-/// point to point or with the direction, the radiance that is really emitted replaces it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EmitterPoint {
-    /// Index into [`Scene::objects`].
-    pub object: u32,
-    /// Triangle of its mesh.
-    pub primitive: u32,
-    /// Weights of the triangle's second and third corner.
-    pub barycentric: [f32; 2],
-    /// What one unit of radiance counts there: of a photon's flux, or over the pdf of direct light.
-    pub per_radiance: f32,
-}
-
 /// Where light is asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
@@ -99,12 +86,6 @@ pub struct Receiver {
 impl From<Vec3> for Receiver {
     fn from(p: Vec3) -> Self {
         Self { p, normal: None }
-    }
-}
-
-impl EmitterPoint {
-    fn chosen_with(self, probability: f32) -> Self {
-        Self { per_radiance: self.per_radiance / probability, ..self }
     }
 }
 

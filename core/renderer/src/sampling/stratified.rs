@@ -45,12 +45,6 @@ impl StratifiedSet {
         Self { raw, shared, mask: [leading(bits.div_ceil(2)), leading(bits / 2)] }
     }
 
-    /// A set of `count` points whose strata too are each pixel's own: for what is paired with points of another set.
-    #[must_use]
-    pub fn unshared(count: u32) -> Self {
-        Self { mask: [0; 2], ..Self::new(count, 0) }
-    }
-
     /// Number of points.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -85,6 +79,17 @@ impl StratifiedSet {
         }
         out
     }
+}
+
+/// Point `index` of a set that is all the seed's own, in [0, 1)²: strata and order too. Points of two such sets, or of one
+/// and a [`StratifiedSet`], can be paired by their index: in the sequence's own order both would name the same strata over and
+/// over, and half of all pairs never occur. Aligned runs of 2ᵏ points stay together (Burley 2020, "Practical Hash-based Owen
+/// Scrambling").
+#[must_use]
+pub fn shuffled_point(index: u32, seed: u32) -> [f32; 2] {
+    let seeds = [0xA3C5_9AC3, 0x68BC_21EB, 0x02E5_BE93].map(|dimension| mix(seed ^ dimension));
+    let index = scramble(index.reverse_bits(), seeds[0]);
+    [unit_float(scramble(index, seeds[1])), unit_float(scramble(sobol_1(index).reverse_bits(), seeds[2]))]
 }
 
 /// Second dimension of the Sobol' sequence, as a 0.32 fixed-point number.
@@ -149,6 +154,44 @@ mod tests {
                 assert!(counts.iter().all(|&c| c == 1), "seed {seed}, intervals {columns} x {rows}");
             }
         }
+    }
+
+    /// The first and the second half of a shuffled set are nets, and so is the whole.
+    #[test]
+    fn shuffled_points_are_nets() {
+        for (first, m) in [(0, 6), (0, 5), (32, 5), (16, 4)] {
+            for seed in 0..20_u32 {
+                for split in 0..=m {
+                    let (columns, rows) = ((1 << split) as f32, (1 << (m - split)) as f32);
+                    let mut cells = std::collections::BTreeSet::new();
+                    for i in first..first + (1 << m) {
+                        let [x, y] = shuffled_point(i, seed);
+                        cells.insert(((x * columns) as u32, (y * rows) as u32));
+                    }
+                    assert_eq!(cells.len(), 1 << m, "seed {seed}, {m}, intervals {columns} x {rows}");
+                }
+            }
+        }
+    }
+
+    /// In 64 pairs of points of two sets each quarter meets each quarter about four times. In the sequence's own order it
+    /// meets one of them sixteen times and the others never: squares of the differences add up to 768.
+    #[test]
+    fn shuffled_points_pair_with_those_of_other_sets() {
+        let set = StratifiedSet::new(64, 5);
+        let pixels = 500;
+        let mut squares = 0;
+        for pixel in 0..pixels {
+            let mut met = [[0_i32; 4]; 4];
+            for i in 0..64 {
+                let own = shuffled_point(i, pixel)[0];
+                let other = set.point(i as usize, mix(pixel ^ 77))[0];
+                met[(own * 4.0) as usize][(other * 4.0) as usize] += 1;
+            }
+            squares += met.as_flattened().iter().map(|met| (met - 4).pow(2)).sum::<i32>();
+        }
+        let mean = f64::from(squares) / f64::from(pixels);
+        assert!(mean < 60.0, "{mean}");
     }
 
     #[test]
