@@ -24,7 +24,8 @@ def test_levels(check, resolution, size, levels):
     scene = furnace()
     if size > 1.0:
         scene.add(quad(size, -0.5), glowing(0.0, 0.0))
-    picture = scene.render(settings(pyramid__finest_resolution=resolution, photon_pass__photon_count=400_000))
+    grid = {"pyramid__finest_resolution": resolution, "pyramid__adaptive_levels": 0}
+    picture = scene.render(settings(**grid, photon_pass__photon_count=400_000))
     case = f"{levels} levels, {resolution} cells"
     check(case, expected=2.0, got=picture.mean, bound=0.01)
     check(f"{case}: levels", expected=levels, got=picture.stats["pyramid"]["levels"], bound=0.0)

@@ -1,8 +1,6 @@
-"""The error that a render states, against the error it has.
+"""The error that a render states, against the error it has: from light followed along paths, see `make_truths`.
 
-The truth is known from two renders with more rays and photons and other seeds: their noise is independent, so that the
-product of the differences from both has the squared error as its expectation. What is stated is noise: with so few
-photons that cells have to be large, the blur of the cells comes on top.
+What is stated is noise; with few photons the blur of cells comes on top.
 """
 
 import json
@@ -16,10 +14,10 @@ from rgp_engine.__main__ import main
 from rgp_engine.accuracy.error import CLIPPED_AT
 from rgp_engine.cli import exr
 from scenes import common
+from tests.render import make_truths
 
 FACTOR = 1.5
 """Halves of a well-spread set of rays differ more than independent ones: the error is stated rather too high."""
-TRUTH = ("photon_pass.photon_count=4000000", "gather.rays=1024", "gather.camera_samples=256")
 
 
 def render(scene: str, folder: Path, seed: int, *settings: str) -> tuple[Any, dict[str, Any]]:
@@ -27,15 +25,16 @@ def render(scene: str, folder: Path, seed: int, *settings: str) -> tuple[Any, di
     picture, stats = folder / "picture.exr", folder / "stats.json"
     arguments = [argument for setting in settings for argument in ("--set", setting)]
     blend = common.SCENES / f"{scene}.blend"
-    command = ["render", str(blend), "-o", str(picture), "--stats", str(stats), "--resolution", "96x72"]
+    command = ["render", str(blend), "-o", str(picture), "--stats", str(stats)]
+    command += ["--resolution", make_truths.RESOLUTION]
     assert main([*command, "--seed", str(seed), *arguments]) == 0
     return exr.read(picture).astype(np.float64), json.loads(stats.read_text())
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["cornell_box", "table", "nave"])
+@pytest.mark.parametrize("scene", make_truths.NAMES)
 def test_error_is_the_true_error(scene: str, tmp_path: Path) -> None:
-    first, second = (render(scene, tmp_path, seed, *TRUTH)[0] for seed in (101, 102))
+    first, second = make_truths.read(scene)
     most = CLIPPED_AT * ((first + second) / 2.0).mean()
     clipped = [np.minimum(picture, most) for picture in (first, second)]
     mean = ((clipped[0] + clipped[1]) / 2.0).mean()

@@ -117,7 +117,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             if px >= camera.region[2] || py >= camera.region[3] {
                 continue;
             }
-            let u = shuffled_point(self.sample, key as u32);
+            let u = g.camera_set.point(self.sample as usize, key as u32);
             let offset = [u[0] - 0.5, u[1] - 0.5];
             self.samples[lane] = PixelSample { offset, taken: true, ..Default::default() };
             let offset = DVec2::new(f64::from(offset[0]), f64::from(offset[1]));
@@ -219,12 +219,12 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let owner = self.traces.meter.enter(Effect::DirectLight);
         for i in 0..g.light_samples {
             let index = self.sample * g.light_samples + i;
-            let [x, y] = g.light_set.points(index as usize, &self.seeds);
             self.packet.clear();
             let mut shadows: [Option<ShadowRay>; LANES] = [None; LANES];
-            for lane in 0..LANES {
-                shadows[lane] = self.shadow(lane, [rotate(self.keys[lane], index), x[lane], y[lane]]);
-                let traced = shadows[lane].as_ref().filter(|s| s.casts_shadow && !g.lit.plan.transparency);
+            for (lane, shadow) in shadows.iter_mut().enumerate() {
+                let [x, y] = shuffled_point(index, hash(self.keys[lane], 2) as u32);
+                *shadow = self.shadow(lane, [rotate(self.keys[lane], index), x, y]);
+                let traced = shadow.as_ref().filter(|s| s.casts_shadow && !g.lit.plan.transparency);
                 if let Some(shadow) = traced {
                     self.packet.set(lane, &shadow.ray, shadow.t_far);
                     self.traces.rays.shadow += 1;

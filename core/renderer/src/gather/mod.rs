@@ -64,7 +64,7 @@ pub struct Gatherer<'a, E> {
     sampling: GatherSampling,
     /// The lens that camera rays pass through, and where.
     lens: Option<&'a Lens>,
-    light_set: StratifiedSet,
+    camera_set: StratifiedSet,
     gather_set: StratifiedSet,
     /// Of a pixel: light samples against gather rays.
     shares: Shares,
@@ -152,7 +152,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             max_depth: gather.max_depth.max(E::LEAST_DEPTH),
             sampling: gather.sampling,
             lens,
-            light_set: set(gather.camera_samples * gather.light_samples, 2),
+            camera_set: set(gather.camera_samples, 1),
             gather_set: set(gather.rays, 3),
             shares: Shares {
                 light: (gather.camera_samples * gather.light_samples) as f32,

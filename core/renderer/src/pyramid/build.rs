@@ -148,12 +148,12 @@ fn push_bins(
         .collect()
 }
 
-/// Adds every cell to its parent, from the finest level up.
+/// Adds every cell to its parent, from the finest level up, but for what is hidden in a parent that is not.
 fn merge(layout: &Layout, cells: &mut [Vec<CellSum>]) {
     for level in (1..layout.levels.len()).rev() {
         let (coarser, finer) = cells.split_at_mut(level);
         for (place, sum) in finer[0].iter().enumerate().filter(|(_, sum)| sum.count > 0) {
-            if let Some(parent) = layout.parent(level, place) {
+            if let Some(parent) = layout.counting_parent(level, place) {
                 coarser[level - 1][parent].add(sum);
             }
         }
@@ -166,7 +166,7 @@ fn merge_bins(layout: &Layout, sums: &mut Sums) {
     for level in (1..sums.glossy.len()).rev() {
         let (coarser, finer) = sums.glossy.split_at_mut(level);
         for (&place, values) in &finer[0] {
-            if let Some(parent) = layout.parent(level, place) {
+            if let Some(parent) = layout.counting_parent(level, place) {
                 let count = sums.bins.count();
                 let total = coarser[level - 1].entry(parent).or_insert_with(|| vec![[0; 3]; SETS * count]);
                 for (values, total) in values.chunks(count).zip(total.chunks_mut(count)) {

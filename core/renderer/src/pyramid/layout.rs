@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use super::class::{BACKS, NormalClasses};
 use super::grid::Grid;
 use super::index::{CellKey, LevelIndex};
-use super::measure::{Cells, Measure, add_surfaces};
+use super::measure::{Cells, Measure};
 use crate::math::Side;
 
 /// One triangle as the pyramid sees it.
@@ -110,6 +110,9 @@ pub struct LevelLayout {
     pub keys: Vec<CellKey>,
     /// Surface of each cell.
     pub surfaces: Vec<CellSurface>,
+    /// Whether light cannot come to the cell's surface, or hardly: it counts for itself, and not for a coarser cell that
+    /// holds open surface too.
+    pub hidden: Vec<bool>,
 }
 
 /// The cells of all levels.
@@ -162,20 +165,31 @@ impl Layout {
         if let Some(place) = index.find(cell, class) {
             return Some((level, place));
         }
+        // Just across a border; blocks beyond it may be refined.
+        let finest = 0.25 * self.grid.levels[self.grid.finest()].cell_size;
         let cell_size = self.grid.levels[level].cell_size;
         let fraction = offset / cell_size;
         let fraction = fraction - fraction.floor() - Vec3::splat(0.5);
+        let across = (Vec3::splat(0.5) - fraction.abs()) * cell_size + finest;
         let mut axes = [0, 1, 2];
         axes.sort_by(|&a, &b| fraction[b].abs().total_cmp(&fraction[a].abs()));
         // Nearest first: across the closest face, the next face, then the edge between them, and so on.
         let (a, b, c) = (1 << axes[0], 1 << axes[1], 1 << axes[2]);
-        [a, b, a | b, c, a | c, b | c, a | b | c].into_iter().find_map(|across: usize| {
-            let step =
-                |axis: usize| if across >> axis & 1 == 1 { cell_size.copysign(fraction[axis]) } else { 0.0 };
+        [a, b, a | b, c, a | c, b | c, a | b | c].into_iter().find_map(|borders: usize| {
+            let step = |axis: usize| {
+                if borders >> axis & 1 == 1 { across[axis].copysign(fraction[axis]) } else { 0.0 }
+            };
             let beside = offset + Vec3::new(step(0), step(1), step(2));
             let (level, cell) = self.grid.locate(beside, self.grid.finest())?;
             Some((level, self.levels[level].index.find(cell, class)?))
         })
+    }
+
+    /// Place of the coarser cell that a cell is a part of: where its surface and light are counted too.
+    #[must_use]
+    pub fn counting_parent(&self, level: usize, place: usize) -> Option<usize> {
+        let hidden = self.levels[level].hidden[place];
+        self.parent(level, place).filter(|&parent| !hidden || self.levels[level - 1].hidden[parent])
     }
 
     /// Place of the coarser cell that holds a cell.
@@ -200,7 +214,8 @@ impl Layout {
     #[must_use]
     pub fn bytes(&self) -> usize {
         let level = |l: &LevelLayout| {
-            l.index.bytes() + l.keys.len() * (size_of::<CellKey>() + size_of::<CellSurface>())
+            l.index.bytes()
+                + l.keys.len() * (size_of::<CellKey>() + size_of::<CellSurface>() + size_of::<bool>())
         };
         self.levels.iter().map(level).sum()
     }
@@ -235,17 +250,19 @@ fn hide_contacts(grid: &Grid, classes: NormalClasses, cells: &mut Cells) {
     }
 }
 
-/// What counts of a cell's open and hidden surface.
-fn counted([mut surface, hidden]: [CellSurface; 2]) -> CellSurface {
-    if surface.area * LEAST_OPEN < hidden.area {
+/// What counts of a cell's open and hidden surface, and whether it is hidden as a whole, so that all of it does.
+fn counted([open, hidden]: [CellSurface; 2]) -> (CellSurface, bool) {
+    let mut surface = open;
+    let is_hidden = open.area * LEAST_OPEN < hidden.area;
+    if is_hidden {
         surface.add(&hidden);
-    } else if surface.glossy_area * LEAST_OPEN < hidden.glossy_area {
+    } else if open.glossy_area * LEAST_OPEN < hidden.glossy_area {
         surface.glossy_area += hidden.glossy_area;
     }
-    surface
+    (surface, is_hidden)
 }
 
-/// Sorts the cells by level and adds every cell's ancestors.
+/// Sorts the cells by level and adds every cell's ancestors: what a cell counts is open there if the cell is not hidden.
 fn levels(grid: &Grid, classes: NormalClasses, cells: Cells) -> Vec<LevelLayout> {
     let mut by_level: Vec<FxHashMap<CellKey, [CellSurface; 2]>> =
         vec![FxHashMap::default(); grid.levels.len()];
@@ -256,11 +273,13 @@ fn levels(grid: &Grid, classes: NormalClasses, cells: Cells) -> Vec<LevelLayout>
     }
     for level in (1..grid.levels.len()).rev() {
         let (coarser, finer) = by_level.split_at_mut(level);
-        for (key, surfaces) in &finer[0] {
+        for (key, &surfaces) in &finer[0] {
             let (cell, class) = key.cell(&grid.levels[level]);
             if let Some(parent) = grid.parent(level, cell) {
                 let key = CellKey::new(&grid.levels[level - 1], parent, class);
-                add_surfaces(coarser[level - 1].entry(key).or_default(), surfaces);
+                let (surface, is_hidden) = counted(surfaces);
+                let [open, hidden] = coarser[level - 1].entry(key).or_default();
+                if is_hidden { hidden.add(&surface) } else { open.add(&surface) }
             }
         }
     }
@@ -270,10 +289,10 @@ fn levels(grid: &Grid, classes: NormalClasses, cells: Cells) -> Vec<LevelLayout>
         .map(|(cells, level)| {
             let mut cells: Vec<_> = cells.into_iter().collect();
             cells.par_sort_unstable_by_key(|(key, _)| *key);
-            let (keys, surfaces): (Vec<_>, Vec<_>) =
-                cells.into_iter().map(|(key, surfaces)| (key, counted(surfaces))).unzip();
+            let keys: Vec<_> = cells.iter().map(|(key, _)| *key).collect();
+            let (surfaces, hidden) = cells.into_iter().map(|(_, surfaces)| counted(surfaces)).unzip();
             let index = LevelIndex::new(level, keys.iter().copied());
-            LevelLayout { index, keys, surfaces }
+            LevelLayout { index, keys, surfaces, hidden }
         })
         .collect()
 }

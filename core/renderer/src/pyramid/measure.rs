@@ -171,7 +171,7 @@ impl PendingPart {
     }
 }
 
-pub(super) fn add_surfaces(sums: &mut [CellSurface; 2], surfaces: &[CellSurface; 2]) {
+fn add_surfaces(sums: &mut [CellSurface; 2], surfaces: &[CellSurface; 2]) {
     for (sum, surface) in sums.iter_mut().zip(surfaces) {
         sum.add(surface);
     }
