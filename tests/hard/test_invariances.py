@@ -150,4 +150,6 @@ def test_twenty_seeds(check):
     stack = np.stack([picture.combined[..., :3] for picture in pictures]).astype(np.float64)
     scatter = 100.0 * np.sqrt(stack.var(axis=0, ddof=1).mean()) / stack.mean()
     printed = np.sqrt(np.mean([picture.stats["error"]["rms_mean"] ** 2 for picture in pictures]))
-    check("scatter of twenty seeds over the printed error", expected=1.0, got=scatter / printed, bound=1.0 / 3.0)
+    check(
+        "scatter of twenty seeds over the printed error", expected=1.0, got=scatter / printed, bound=1.0 / 3.0
+    )
