@@ -196,7 +196,7 @@ SHEAR = np.array([[1, 0.7, -0.4, 0], [0, 1, 0.6, 0], [0, 0, 1, 0], [0, 0, 0, 1.0
 )
 @pytest.mark.parametrize("shared", [False, True], ids=["alone", "instance"])
 def test_object_scale(check, name, matrix, shared):
-    """A ball in a furnace, deformed; as an instance its mesh keeps a space of its own. Cells are a fifth of its radius."""
+    """A ball in a furnace, deformed; an instance has a mesh in a space of its own. A cell is a fifth of its radius."""
     scene = furnace()
     mesh, material = scene.mesh(ball(2, 0.3)), scene.material(glowing(0.5))
     scene.place(mesh, material, moved(0.2, 0.1, 0.6) @ matrix)

@@ -144,7 +144,7 @@ def test_threads_and_tiles(check, threads, tile):
 
 
 def test_twenty_seeds(check):
-    """The scatter of twenty pictures is the error that each of them prints, which is rather too high: 1.5 times at most."""
+    """The scatter of twenty pictures is the error that each of them prints, which is too high rather than too low."""
     scene = room().builder.finish()
     pictures = [render(scene, settings(render__seed=seed, gather__camera_samples=16)) for seed in range(20)]
     stack = np.stack([picture.combined[..., :3] for picture in pictures]).astype(np.float64)

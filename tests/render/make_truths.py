@@ -1,8 +1,9 @@
 """Makes the truths of the error tests: `python -m tests.render.make_truths [SCENE ...]`.
 
-Light is followed along paths (`gather.estimator=path`), twice, with seeds that share nothing: the product of differences
-from both has the squared error of a picture as its expectation. Written to `tests/render/references/truth_SCENE.exr`,
-96 x 72, half floats, layers `First` and `Second`. All three scenes take about ten minutes on two cores.
+Light is followed along paths (`gather.estimator=path`), twice, with seeds that share nothing. A picture's differences
+from one and from the other, multiplied, have its squared error as their expectation. Written to
+`tests/render/references/truth_SCENE.exr`, 96 x 72, half floats, layers `First` and `Second`; all three scenes take
+about ten minutes on two cores.
 """
 
 from __future__ import annotations
