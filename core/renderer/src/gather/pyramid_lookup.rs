@@ -28,7 +28,10 @@ impl<'a> PyramidLookup<'a> {
     /// True where a look-up would read a cell that the ray's start may lie in, or where a mirror-like ray would see cells.
     fn too_short(&self, surface: &Surface<'_>, footprint: Footprint) -> bool {
         let area = footprint.area();
-        let cell = self.pyramid.cell_size(surface.p, self.pyramid.level_for(area));
+        let level = self.pyramid.level_for(area);
+        // Direction bins are those of cells that are not refined.
+        let finest = if surface.bsdf.has(LobeSet::ROUGH) { self.pyramid.base_level() } else { level };
+        let cell = self.pyramid.cell_size(surface.p, level.min(finest));
         let near = footprint.travelled < self.retrace_distance * cell;
         near || (footprint.sharp && area < cell * cell)
     }

@@ -185,6 +185,12 @@ impl Pyramid {
         located.map_or(0.0, |(level, _)| self.grid.levels[level].cell_size)
     }
 
+    /// The finest level that is everywhere.
+    #[must_use]
+    pub const fn base_level(&self) -> usize {
+        self.grid.base()
+    }
+
     /// Edge of the cells of a level (scene units).
     #[must_use]
     #[inline]
