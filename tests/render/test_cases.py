@@ -16,15 +16,16 @@ SETTINGS = {"gather.rays": 64, "gather.camera_samples": 64, "photon_pass.photon_
 SEEDS = (0,)
 """One picture has no noise to speak of in its mean."""
 CAUSTIC_SETTINGS = {**SETTINGS, "gather.rays": 512, "gather.camera_samples": 256}
-CAUSTIC_SEEDS = (0, 1, 2, 3)
-"""A lamp behind a ball of glass is found by few rays: there the standard error is that of several pictures' means."""
+CAUSTIC_SEEDS = tuple(range(8))
+"""A lamp behind a ball of glass is found by few rays, and rough glass scatters them: there the
+standard error is that of several pictures' means."""
 LARGEST_OWN_ERROR = 0.01
 """Standard error of the caustic pictures' mean, as a part of it: beyond, the comparison would say nothing."""
 GLASS = ("glass", "refraction", "transmission")
 
 
 def is_caustic(case: str) -> bool:
-    return case.endswith("/lamp") and any(word in case for word in GLASS)
+    return (case.endswith("/lamp") or "rough" in case) and any(word in case for word in GLASS)
 
 
 def marked(case: str) -> object:
