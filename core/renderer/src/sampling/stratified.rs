@@ -40,7 +40,7 @@ impl StratifiedSet {
         let leading = |n: u32| if n == 0 { 0 } else { u32::MAX << (32 - n) };
         let seeds =
             [seed.wrapping_mul(0x9E37_79B9) ^ 0xA511_E9B3, seed.wrapping_mul(0x85EB_CA6B) ^ 0x63D8_3595];
-        let raw: Vec<_> = (0..count).map(|i| [i, sobol_1(i).reverse_bits()]).collect();
+        let raw: Vec<_> = (0..count).map(|i| [i, sobol_1_reversed(i)]).collect();
         let shared = raw.iter().map(|&[x, y]| [scramble(x, seeds[0]), scramble(y, seeds[1])]).collect();
         Self { raw, shared, mask: [leading(bits.div_ceil(2)), leading(bits / 2)] }
     }
@@ -86,23 +86,22 @@ impl StratifiedSet {
 /// over, and half of all pairs never occur. Aligned runs of 2ᵏ points stay together (Burley 2020, "Practical Hash-based Owen
 /// Scrambling").
 #[must_use]
+#[inline(always)]
 pub fn shuffled_point(index: u32, seed: u32) -> [f32; 2] {
     let seeds = [0xA3C5_9AC3, 0x68BC_21EB, 0x02E5_BE93].map(|dimension| mix(seed ^ dimension));
     let index = scramble(index.reverse_bits(), seeds[0]);
-    [unit_float(scramble(index, seeds[1])), unit_float(scramble(sobol_1(index).reverse_bits(), seeds[2]))]
+    [unit_float(scramble(index, seeds[1])), unit_float(scramble(sobol_1_reversed(index), seeds[2]))]
 }
 
-/// Second dimension of the Sobol' sequence, as a 0.32 fixed-point number.
-fn sobol_1(mut index: u32) -> u32 {
-    let (mut direction, mut result) = (1_u32 << 31, 0);
-    while index != 0 {
-        if index & 1 != 0 {
-            result ^= direction;
-        }
-        direction ^= direction >> 1;
-        index >>= 1;
-    }
-    result
+/// Second dimension of the Sobol' sequence with its bits reversed: Pascal's triangle modulo 2 times the index. Bit k is the
+/// sum of the index's bits whose numbers hold all bits of k, which goes one bit of their numbers at a time.
+const fn sobol_1_reversed(index: u32) -> u32 {
+    let mut x = index;
+    x ^= (x & 0xAAAA_AAAA) >> 1;
+    x ^= (x & 0xCCCC_CCCC) >> 2;
+    x ^= (x & 0xF0F0_F0F0) >> 4;
+    x ^= (x & 0xFF00_FF00) >> 8;
+    x ^ (x & 0xFFFF_0000) >> 16
 }
 
 /// Nested uniform scramble of a number given with its bits reversed; the result is in natural order.
@@ -153,6 +152,21 @@ mod tests {
                 }
                 assert!(counts.iter().all(|&c| c == 1), "seed {seed}, intervals {columns} x {rows}");
             }
+        }
+    }
+
+    /// Against the direction numbers of the sequence: each is the one before, and that shifted by one, added (Sobol' 1967).
+    #[test]
+    fn second_dimension_is_that_of_direction_numbers() {
+        for index in (0..3000).chain([u32::MAX, 0x8000_0001, 0x1234_5678]) {
+            let (mut direction, mut result) = (1_u32 << 31, 0);
+            for bit in 0..32 {
+                if index >> bit & 1 == 1 {
+                    result ^= direction;
+                }
+                direction ^= direction >> 1;
+            }
+            assert_eq!(sobol_1_reversed(index).reverse_bits(), result, "{index}");
         }
     }
 
