@@ -2,6 +2,7 @@
 
 mod aim;
 mod baselines;
+mod caustics;
 mod memory;
 mod openness;
 
@@ -20,7 +21,7 @@ use crate::film::Film;
 use crate::gather::{self, Gatherer, PyramidLookup, Stop, TraceFloor};
 use crate::light::{Environment, Lights};
 use crate::lit_scene::LitScene;
-use crate::photon_pass::{self, PyramidDeposits};
+use crate::photon_pass::{self, Carry, PhotonPass, PyramidDeposits};
 use crate::progress::{Progress, Stage};
 use crate::pyramid::{
     Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, Reading, SETS, SidePoint,
@@ -69,7 +70,7 @@ pub fn trace_floor(
     let film = Film::new(width, height, &settings.film);
     threads(settings)?.install(|| {
         let lit = light(scene, settings, library, &progress)?;
-        Ok(gather::trace_floor(&Gatherer::new(&lit, &baseline::Path, settings), &film))
+        Ok(gather::trace_floor(&Gatherer::new(&lit, &baseline::Path, None, settings), &film))
     })
 }
 
@@ -137,7 +138,7 @@ impl Work<'_> {
         let bins = lit.plan.direction_bins().then_some(DirectionBins { elevation, azimuth });
         let wanted = settings.pyramid.finest_resolution;
         let measure = |resolution| layout(lit, self.seen, settings, resolution, progress);
-        let budget = Budget::new(lit.accel.scene(), settings)?;
+        let budget = Budget::new(lit.accel.scene(), settings)?.less(self.caustic_bytes());
         let (layout, resolution) = budget.fit(wanted, bins, measure)?;
         if resolution < wanted {
             stats.warnings.push(format!("the memory limit allows {resolution} cells instead of {wanted}"));
@@ -200,10 +201,12 @@ impl Work<'_> {
     fn photons(&self, sink: &impl PhotonSink, sets: usize, stats: &mut Stats) -> Result<(), RenderError> {
         self.progress.enter(Stage::PhotonPass);
         let clock = Instant::now();
-        let (photon_pass, seed) = (&self.settings.photon_pass, self.settings.render.seed);
-        let counts = photon_pass::run(self.lit, photon_pass, seed, sets, sink, self.progress)?;
+        let (settings, seed) = (&self.settings.photon_pass, self.settings.render.seed);
+        let (count, max_depth) = (settings.photon_count, settings.max_depth);
+        let pass = PhotonPass { carry: Carry::All, count, max_depth, seed, sets };
+        let counts = photon_pass::run(self.lit, pass, sink, self.progress)?;
         stats.photons.emitted = counts.emitted;
-        stats.rays.photon = counts.segments;
+        stats.rays.photon += counts.segments;
         stats.seconds.photon_pass = clock.elapsed().as_secs_f64() + stats.aim.map_or(0.0, |aim| aim.seconds);
         counts.costs.charge(&mut stats.effects, stats.seconds.photon_pass);
         Ok(())
@@ -211,9 +214,13 @@ impl Work<'_> {
 
     /// Makes the picture; even and odd passes ask one estimator each.
     fn gather<E: Estimator>(&self, estimators: [&E; SETS], stats: &mut Stats) -> Result<(), RenderError> {
+        let maps = self.caustics(SETS.min(self.settings.gather.camera_samples as usize), stats)?;
         self.progress.enter(Stage::Gather);
         let clock = Instant::now();
-        let gatherers = estimators.map(|estimator| Gatherer::new(self.lit, estimator, self.settings));
+        let gatherers = std::array::from_fn(|half| {
+            let caustics = maps.get(half).or(maps.first());
+            Gatherer::new(self.lit, estimators[half], caustics, self.settings)
+        });
         let stop = Stop::new(&self.settings.gather, self.progress.elapsed());
         let gathered = gather::run(&gatherers, self.film, stop, self.progress);
         stats.error = self.film.picture_error();
@@ -246,7 +253,12 @@ fn light<'a>(
     }
     let plan = EffectsPlan::new(scene, &settings.effects, &mut materials, &mut world);
     let emission: Vec<_> = materials.iter().map(PreparedMaterial::emission).collect();
-    let lights = Lights::with_world(scene, &emission, &world, environment);
+    let mut lights = Lights::with_world(scene, &emission, &world, environment);
+    // The reference stays free of photons: it finds caustics as rays do.
+    let by_photons = plan.has_casters && settings.gather.estimator != EstimatorKind::Path;
+    if let Some(casters) = by_photons.then(|| caustics::casters(scene, &materials)).flatten() {
+        lights.map_caustics(casters);
+    }
     let proxies = lights.lamp_proxies();
     let accel = Accel::build(scene, &proxies, library, settings.render.threads as usize, progress)?;
     Ok(LitScene { accel, materials, lights, plan })

@@ -29,23 +29,23 @@ const CLOCKED: u64 = 64;
 
 /// Work on one block of pixels.
 pub(super) struct Block<'a, 'g, E: Estimator> {
-    gatherer: &'g Gatherer<'a, E>,
+    pub(super) gatherer: &'g Gatherer<'a, E>,
     /// Number of the camera sample.
     sample: u32,
     keys: [u64; LANES],
     seeds: PixelSeeds<LANES>,
     /// Camera samples on constant Lambert surfaces, and on all others.
-    lambert: LambertLanes,
-    vertices: [Option<Box<Vertex<'a>>>; LANES],
+    pub(super) lambert: LambertLanes,
+    pub(super) vertices: [Option<Box<Vertex<'a>>>; LANES],
     /// Whether there are such others.
     has_vertices: bool,
-    samples: [PixelSample; LANES],
-    packet: Packet,
+    pub(super) samples: [PixelSample; LANES],
+    pub(super) packet: Packet,
     /// How far from the lens each camera ray starts.
     start: [f32; LANES],
     /// Of the packet: gather rays that did not start on a constant Lambert surface.
     others: [Option<GatherRay>; LANES],
-    traces: Traces<E::Place>,
+    pub(super) traces: Traces<E::Place>,
 }
 
 impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
@@ -81,6 +81,9 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         self.start(x, y);
         if self.lambert.any() || self.has_vertices {
             self.light();
+            if self.gatherer.caustics.is_some() {
+                self.read_caustics();
+            }
             self.gather();
         }
         self.traces.meter.end();
@@ -175,8 +178,15 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let g = self.gatherer;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.sample) << 16 | 1));
         let (kind, width) = (visibility::CAMERA, g.camera_width.after(self.start[lane]));
-        let mut sampled =
-            Sampled { pdf: None, shares: Shares::EVEN, kind, light: None, lit_side: None, width };
+        let mut sampled = Sampled {
+            pdf: None,
+            shares: Shares::EVEN,
+            kind,
+            light: None,
+            lit_side: None,
+            width,
+            mapped: Rgb::WHITE,
+        };
         let owner = self.traces.meter.owner();
         let (mut first, mut throughput) = (Some(hit), Rgb::WHITE);
         let transparent_film = g.lit.accel.scene().world.film_transparent;
@@ -407,7 +417,8 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         };
         let width = Width::of_solid_angle(solid_angle);
         let (pdf, kind) = (gather_ray.pdf, gather_ray.kind);
-        let sampled = Sampled { pdf, shares: g.shares, kind, light, lit_side, width };
+        let mapped = Rgb::WHITE;
+        let sampled = Sampled { pdf, shares: g.shares, kind, light, lit_side, width, mapped };
         let (ray, mut end) = (self.packet.ray(lane), None);
         let met = g.meet(ray, Some(hit), sampled, &mut rng, &mut self.traces.meter, &mut end);
         let sample = &mut self.samples[lane];
@@ -418,8 +429,10 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         if end.is_some() && g.lit.plan.follows() {
             let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };
             let weight = weight * met.through;
+            let mapped = self.share_of_mapped(lane, gather_ray);
             let target = Target { traces: &mut self.traces, lane, weight };
-            sample.indirect += weight * g.outgoing(&mut end, footprint, &mut rng, target);
+            let radiance = g.outgoing(&mut end, footprint, mapped, &mut rng, target);
+            self.samples[lane].indirect += weight * radiance;
         }
     }
 }

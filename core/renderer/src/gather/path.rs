@@ -10,11 +10,12 @@ use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::effects_plan::{Effect, Meter};
 use crate::estimator::{Estimator, Footprint};
-use crate::light::Receiver;
-use crate::lit_scene::{Surface, ray_kind};
+use crate::light::{Receiver, Sight};
+use crate::lit_scene::{Surface, lobes_lit, ray_kind};
 use crate::sampling::Rng;
 use crate::scene::visibility;
 
+use super::caustics::with_read;
 use super::deferred::{Target, Traces};
 use super::direct::{Shares, shadow_ray, transmittance};
 use super::{Gatherer, Width};
@@ -40,9 +41,15 @@ pub(super) struct Sampled {
     pub(super) lit_side: Option<Vec3>,
     /// How wide the ray is.
     pub(super) width: Width,
+    /// What lights count whose caustics are made of photons.
+    pub(super) mapped: Rgb,
 }
 
 impl Sampled {
+    fn sight(&self) -> Sight {
+        Sight { kind: self.kind, mapped: self.mapped }
+    }
+
     fn weight(&self, pdf_light: f32) -> f32 {
         self.pdf.map_or(1.0, |pdf| self.shares.of_bsdf(pdf, pdf_light))
     }
@@ -99,7 +106,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 let until = hit.map_or(f32::INFINITY, |hit| met.distance + hit.t);
                 let (span, through) = (met.distance..until, met.through);
                 let owner = meter.enter_if(sampled.light);
-                lit.lights.lamps_crossed(from, ray.direction, span, sampled.kind, &mut |radiance, pdf| {
+                lit.lights.lamps_crossed(from, ray.direction, span, sampled.sight(), &mut |radiance, pdf| {
                     met.light += through * radiance * sampled.weight(pdf);
                 });
                 meter.back(owner);
@@ -117,7 +124,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 let owner = meter.enter(Effect::EmissiveMeshes);
                 let (direction, distance) = (ray.direction, met.distance);
                 let pdf = lit.lights.emitter_pdf(from, hit.object, hit.primitive, direction, distance);
-                met.light += met.through * surface.bsdf.emission * sampled.weight(pdf);
+                let share = lit.lights.share_of_mesh(hit.object, sampled.sight());
+                met.light += met.through * surface.bsdf.emission * share * sampled.weight(pdf);
                 meter.back(owner);
             }
             let transparency = surface.bsdf.transparency;
@@ -141,20 +149,22 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
 
     /// Light from outside the scene.
     fn escaped(&self, from: Receiver, direction: Vec3, sampled: Sampled) -> Rgb {
-        let (world, pdf) = self.lit.lights.world_seen(from, direction, sampled.kind);
+        let (world, pdf) = self.lit.lights.world_seen(from, direction, sampled.sight());
         let mut light = world * sampled.weight(pdf);
-        self.lit.lights.suns(from, direction, sampled.kind, &mut |radiance, pdf| {
+        self.lit.lights.suns(from, direction, sampled.sight(), &mut |radiance, pdf| {
             light += radiance * sampled.weight(pdf);
         });
         light
     }
 
     /// Radiance leaving the surface `end` towards where the ray came from, without its emission: read where the estimator
-    /// allows, followed where not, from surface to surface. Look-ups that are deferred go to `target` instead.
+    /// allows, followed where not, from surface to surface. Look-ups that are deferred go to `target` instead. Lights whose
+    /// caustics are made of photons count as `mapped` says as long as the ray goes through mirrors and glass.
     pub(super) fn outgoing(
         &self,
         end: &mut Option<Surface<'a>>,
         mut footprint: Footprint,
+        mut mapped: Rgb,
         rng: &mut Rng,
         mut target: Target<'_, E::Place>,
     ) -> Rgb {
@@ -184,11 +194,16 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 let replaces = lobes.intersects(LobeSet::READ);
                 let effect = if replaces { Some(self.lit.plan.indirect_owner()) } else { light };
                 let before = target.traces.meter.enter_if(effect);
-                radiance += throughput * self.one_light(surface, lobes, counted, rng, target.traces);
+                radiance +=
+                    throughput * self.one_light(surface, [lobes, counted], mapped, rng, target.traces);
                 target.traces.meter.back(before);
             }
             let sample = surface.bsdf.sample(rng.draw(), rng.draw2(), lobes, TransportMode::Radiance);
             let Some(sample) = sample else { break };
+            if lobes.intersects(LobeSet::READ) && !sample.is_delta {
+                // What is not read is followed, and then no caustic.
+                mapped = with_read(mapped, &surface.bsdf, sample.wi, lobes);
+            }
             throughput *= sample.weight;
             let most = throughput.max_channel();
             if most < ROULETTE_BELOW || depth > 8 {
@@ -215,7 +230,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             }
             let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
             let lit_side = surface.bsdf.lit_side();
-            let sampled = Sampled { pdf, shares: Shares::EVEN, kind, light, lit_side, width: Width::NONE };
+            let sampled =
+                Sampled { pdf, shares: Shares::EVEN, kind, light, lit_side, width: Width::NONE, mapped };
             let met = self.meet(ray, Some(hit), sampled, rng, &mut target.traces.meter, end);
             if light.is_some() {
                 radiance += throughput * met.light;
@@ -267,12 +283,13 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
     }
 
     /// Direct light at a vertex that is followed: one light sample against one direction of the BSDF, drawn from `lobes`. Of
-    /// these the light of the `counted` ones is wanted.
+    /// these the light of the `counted` ones is wanted; what sharp ones reflect of a light in the caustic map counts as
+    /// `mapped` says.
     fn one_light(
         &self,
         surface: &Surface<'_>,
-        lobes: LobeSet,
-        counted: LobeSet,
+        [lobes, counted]: [LobeSet; 2],
+        mapped: Rgb,
         rng: &mut Rng,
         traces: &mut Traces<E::Place>,
     ) -> Rgb {
@@ -283,9 +300,16 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         if !surface.bsdf.has(counted) {
             return Rgb::BLACK;
         }
-        let sample = self.lit.sample_direct(surface.receiver(), u);
-        let shadow = sample.and_then(|sample| shadow_ray(surface, &sample, lobes, counted, Shares::EVEN));
-        let Some(shadow) = shadow else { return Rgb::BLACK };
-        shadow.radiance * transmittance(self.lit, &shadow, traces)
+        let Some(sample) = self.lit.sample_direct(surface.receiver(), u) else { return Rgb::BLACK };
+        let Some(shadow) = shadow_ray(surface, &sample, lobes, counted, Shares::EVEN) else {
+            return Rgb::BLACK;
+        };
+        let radiance = if sample.is_mapped {
+            let lit = counted.and(lobes_lit(sample.visibility));
+            shadow.radiance * with_read(mapped, &surface.bsdf, sample.wi, lit)
+        } else {
+            shadow.radiance
+        };
+        radiance * transmittance(self.lit, &shadow, traces)
     }
 }

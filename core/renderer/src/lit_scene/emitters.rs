@@ -14,11 +14,21 @@ impl LitScene<'_> {
     #[inline]
     #[must_use]
     pub fn emit(&self, u: [f32; 5]) -> Option<Emission> {
-        let mut emission = self.lights.emit(u)?;
+        self.lights.emit(u).map(|emission| self.exact(emission))
+    }
+
+    /// See [`crate::light::Lights::emit_to_casters`].
+    #[must_use]
+    pub fn emit_to_casters(&self, u: [f32; 6]) -> Option<Emission> {
+        self.lights.emit_to_casters(u).map(|emission| self.exact(emission))
+    }
+
+    #[inline]
+    fn exact(&self, mut emission: Emission) -> Emission {
         if let Some(point) = self.exact_at(emission.point) {
             emission.flux = self.radiance(&point, emission.origin, emission.direction) * point.per_radiance;
         }
-        Some(emission)
+        emission
     }
 
     /// See [`crate::light::Lights::sample_direct`].
