@@ -41,7 +41,7 @@ fn flux_into_ball(count: u32, mut emit: impl FnMut() -> Option<Emission>) -> (f6
 #[track_caller]
 fn assert_same_flux(mut lights: Lights, most_aimed: bool) {
     let mut random = Random(17);
-    let (even, rare) = flux_into_ball(1_000_000, || lights.emit(random.uniforms()));
+    let (even, rare) = flux_into_ball(4_000_000, || lights.emit(random.uniforms()));
     lights.map_caustics(casters());
     assert!(lights.has_mapped());
     let (aimed, often) = flux_into_ball(200_000, || lights.emit_to_casters(random.uniforms()));
@@ -56,7 +56,7 @@ fn at(shape: LampShape) -> Lamp {
 #[test]
 fn point_lamps() {
     assert_same_flux(one_lamp(at(LampShape::Point { radius: 0.0, soft_falloff: false })), true);
-    assert_same_flux(one_lamp(at(LampShape::Point { radius: 0.05, soft_falloff: false })), true);
+    assert_same_flux(one_lamp(at(LampShape::Point { radius: 0.05, soft_falloff: false })), false);
 }
 
 #[test]

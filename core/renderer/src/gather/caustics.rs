@@ -5,11 +5,13 @@ use std::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 
 use crate::accel::LANES;
-use crate::bsdf::{Bsdf, LobeSet};
+use crate::bsdf::{Bsdf, BsdfSample, LobeSet};
 use crate::color::Rgb;
-use crate::effects_plan::Effect;
+use crate::effects_plan::{Effect, Meter};
 use crate::estimator::Estimator;
+use crate::lit_scene::Surface;
 
+use super::Gatherer;
 use super::block::Block;
 use super::vertex::{GatherRay, Vertex};
 
@@ -26,7 +28,7 @@ impl<E: Estimator> Block<'_, '_, E> {
                 let irradiance = map.irradiance(self.lambert.p[lane], self.lambert.ng[lane]);
                 self.lambert.weight[lane] * irradiance * FRAC_1_PI
             } else if let Some(Vertex { surface, throughput }) = self.vertices[lane].as_deref() {
-                *throughput * map.radiance(surface.p, &surface.bsdf)
+                *throughput * self.gatherer.caustics_at(surface, &mut self.traces.meter)
             } else {
                 continue;
             };
@@ -35,14 +37,56 @@ impl<E: Estimator> Block<'_, '_, E> {
         self.traces.meter.back(owner);
     }
 
-    /// What caustics of lights in the map count that a gather ray brings through mirrors and glass: the map holds those on
-    /// diffuse and wide glossy lobes, not those that a sharp one reflects.
-    pub(super) fn share_of_mapped(&self, lane: usize, ray: &GatherRay) -> Rgb {
-        if !self.gatherer.lit.lights.has_mapped() || ray.pdf.is_none() {
-            return Rgb::WHITE;
+    /// What mapped lights count that a gather ray brings through mirrors and glass: the map holds their caustics on diffuse
+    /// and wide glossy lobes, not those that a sharp one reflects.
+    pub(super) fn share_of_mapped(&self, lane: usize, ray: &GatherRay) -> Mapped {
+        let share = match self.vertices[lane].as_deref() {
+            _ if !self.gatherer.lit.lights.has_mapped() || ray.pdf.is_none() => Rgb::WHITE,
+            Some(Vertex { surface, .. }) => {
+                Rgb::WHITE - read_share(&surface.bsdf, self.packet.ray(lane).direction, LobeSet::ALL)
+            }
+            None => Rgb::BLACK,
+        };
+        Mapped { share, is_sharp: ray.sharp }
+    }
+}
+
+impl<E: Estimator> Gatherer<'_, E> {
+    /// What the caustic map holds for a surface, towards where the ray came from.
+    #[inline(never)]
+    pub(super) fn caustics_at(&self, surface: &Surface<'_>, meter: &mut Meter) -> Rgb {
+        let map = self.caustics.filter(|_| surface.bsdf.has(LobeSet::READ));
+        map.map_or(Rgb::BLACK, |map| {
+            let owner = meter.enter(Effect::Caustics);
+            let radiance = map.radiance(surface.p, &surface.bsdf);
+            meter.back(owner);
+            radiance
+        })
+    }
+}
+
+/// What mapped lights count along a ray that is followed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mapped {
+    /// Of those that the mirror or glass where it is now shows.
+    pub(super) share: Rgb,
+    /// It came from the eye's vertex by way of nothing but mirrors, glass and sharp gloss: where it is not read it is at a
+    /// vertex of the eye's, and the map is.
+    pub(super) is_sharp: bool,
+}
+
+impl Mapped {
+    /// Goes on from a surface that reflects with `lobes`; gives what lights count that are met without anything between.
+    pub(super) fn follow(&mut self, bsdf: &Bsdf<'_>, sample: &BsdfSample, lobes: LobeSet) -> Rgb {
+        let mut on_the_way = self.share;
+        if lobes.intersects(LobeSet::READ) && !sample.is_delta {
+            let read = read_share(bsdf, sample.wi, lobes);
+            let followed = (Rgb::WHITE - read) * self.share;
+            on_the_way = read + followed;
+            self.share = if self.is_sharp { followed } else { on_the_way };
         }
-        let Some(vertex) = &self.vertices[lane] else { return Rgb::BLACK };
-        Rgb::WHITE - read_share(&vertex.surface.bsdf, self.packet.ray(lane).direction, LobeSet::ALL)
+        self.is_sharp &= LobeSet::FOLLOWED.intersects(sample.class);
+        on_the_way
     }
 }
 

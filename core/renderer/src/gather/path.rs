@@ -15,7 +15,7 @@ use crate::lit_scene::{Surface, lobes_lit, ray_kind};
 use crate::sampling::Rng;
 use crate::scene::visibility;
 
-use super::caustics::with_read;
+use super::caustics::{Mapped, with_read};
 use super::deferred::{Target, Traces};
 use super::direct::{Shares, shadow_ray, transmittance};
 use super::{Gatherer, Width};
@@ -158,13 +158,12 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
     }
 
     /// Radiance leaving the surface `end` towards where the ray came from, without its emission: read where the estimator
-    /// allows, followed where not, from surface to surface. Look-ups that are deferred go to `target` instead. Lights whose
-    /// caustics are made of photons count as `mapped` says as long as the ray goes through mirrors and glass.
+    /// allows, followed where not, from surface to surface. Look-ups that are deferred go to `target` instead.
     pub(super) fn outgoing(
         &self,
         end: &mut Option<Surface<'a>>,
         mut footprint: Footprint,
-        mut mapped: Rgb,
+        mut mapped: Mapped,
         rng: &mut Rng,
         mut target: Target<'_, E::Place>,
     ) -> Rgb {
@@ -182,6 +181,9 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 }
                 None => {
                     target.traces.rays.retraced += 1;
+                    if mapped.is_sharp {
+                        radiance += throughput * self.caustics_at(surface, &mut target.traces.meter);
+                    }
                     LobeSet::ALL
                 }
             };
@@ -195,25 +197,15 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 let effect = if replaces { Some(self.lit.plan.indirect_owner()) } else { light };
                 let before = target.traces.meter.enter_if(effect);
                 radiance +=
-                    throughput * self.one_light(surface, [lobes, counted], mapped, rng, target.traces);
+                    throughput * self.one_light(surface, [lobes, counted], mapped.share, rng, target.traces);
                 target.traces.meter.back(before);
             }
             let sample = surface.bsdf.sample(rng.draw(), rng.draw2(), lobes, TransportMode::Radiance);
             let Some(sample) = sample else { break };
-            if lobes.intersects(LobeSet::READ) && !sample.is_delta {
-                // What is not read is followed, and then no caustic.
-                mapped = with_read(mapped, &surface.bsdf, sample.wi, lobes);
-            }
+            let on_the_way = mapped.follow(&surface.bsdf, &sample, lobes);
             throughput *= sample.weight;
-            let most = throughput.max_channel();
-            if most < ROULETTE_BELOW || depth > 8 {
-                let survival = most.min(0.95);
-                if rng.draw() >= survival {
-                    break;
-                }
-                throughput = throughput * (1.0 / survival);
-            }
-            if !self.pass(&mut light, sample.class, &mut target.traces.meter) {
+            let survives = survives(&mut throughput, depth, rng);
+            if !survives || !self.pass(&mut light, sample.class, &mut target.traces.meter) {
                 break;
             }
             let kind = ray_kind(&sample);
@@ -230,8 +222,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             }
             let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
             let lit_side = surface.bsdf.lit_side();
-            let sampled =
-                Sampled { pdf, shares: Shares::EVEN, kind, light, lit_side, width: Width::NONE, mapped };
+            let (shares, width) = (Shares::EVEN, Width::NONE);
+            let sampled = Sampled { pdf, shares, kind, light, lit_side, width, mapped: on_the_way };
             let met = self.meet(ray, Some(hit), sampled, rng, &mut target.traces.meter, end);
             if light.is_some() {
                 radiance += throughput * met.light;
@@ -312,4 +304,18 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         };
         radiance * transmittance(self.lit, &shadow, traces)
     }
+}
+
+/// Russian roulette: false where the path ends.
+fn survives(throughput: &mut Rgb, depth: u32, rng: &mut Rng) -> bool {
+    let most = throughput.max_channel();
+    if most >= ROULETTE_BELOW && depth <= 8 {
+        return true;
+    }
+    let survival = most.min(0.95);
+    if rng.draw() >= survival {
+        return false;
+    }
+    *throughput = *throughput * (1.0 / survival);
+    true
 }
