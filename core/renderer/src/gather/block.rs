@@ -11,8 +11,9 @@ use crate::color::Rgb;
 use crate::effects_plan::Effect;
 use crate::estimator::{Estimator, Footprint};
 use crate::film::{BLOCK, PixelSample, TileRect};
+use crate::light::Receiver;
 use crate::lit_scene::ray_kind;
-use crate::sampling::{PixelSeeds, Rng, hash, shuffled_point};
+use crate::sampling::{PixelSeeds, Rng, hash, shuffled_point, shuffled_points};
 use crate::scene::visibility;
 use crate::settings::GatherSampling;
 
@@ -26,6 +27,9 @@ use super::{Gatherer, Width};
 
 /// One block in so many is clocked, to tell what each effect costs.
 const CLOCKED: u64 = 64;
+
+/// Tells a pixel's points on lamps from its points in the pixel.
+const LAMP_SEED: u32 = 0x9E37_79B1;
 
 /// Work on one block of pixels.
 pub(super) struct Block<'a, 'g, E: Estimator> {
@@ -217,13 +221,14 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             return;
         }
         let owner = self.traces.meter.enter(Effect::DirectLight);
+        let seeds = self.keys.map(|key| key as u32 ^ LAMP_SEED);
         for i in 0..g.light_samples {
             let index = self.sample * g.light_samples + i;
             self.packet.clear();
             let mut shadows: [Option<ShadowRay>; LANES] = [None; LANES];
+            let [x, y] = shuffled_points(index, &seeds);
             for (lane, shadow) in shadows.iter_mut().enumerate() {
-                let [x, y] = shuffled_point(index, hash(self.keys[lane], 2) as u32);
-                *shadow = self.shadow(lane, [rotate(self.keys[lane], index), x, y]);
+                *shadow = self.shadow(lane, [rotate(self.keys[lane], index), x[lane], y[lane]]);
                 let traced = shadow.as_ref().filter(|s| s.casts_shadow && !g.lit.plan.transparency);
                 if let Some(shadow) = traced {
                     self.packet.set(lane, &shadow.ray, shadow.t_far);
@@ -348,7 +353,10 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
                 Some(ray) => (ray, ray.pdf.map_or(0.0, |pdf| g.solid_angle(pdf))),
                 None => (GatherRay::diffuse(self.lambert.weight[lane], Some(pdfs[lane])), solid_angles[lane]),
             };
-            let hit = self.packet.hit(lane);
+            let hit = match self.packet.hit(lane) {
+                Some(hit) if g.lit.accel.is_lamp(hit.object) => self.cross_lamps(lane, &ray, solid_angle),
+                hit => hit,
+            };
             // No closure: it would not be compiled for the wider instructions.
             let readable = match hit {
                 Some(hit) if !ray.sharp => g.readable(&self.packet.ray(lane), &hit, solid_angle),
@@ -387,6 +395,17 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         }
     }
 
+    /// Adds the light of the lamps that the ray of a lane met first; gives what is behind them.
+    #[inline(never)]
+    fn cross_lamps(&mut self, lane: usize, gather_ray: &GatherRay, solid_angle: f32) -> Option<Hit> {
+        let ray = self.packet.ray(lane);
+        let sampled = self.sampled(lane, gather_ray, solid_angle);
+        let from = Receiver { p: ray.origin, normal: sampled.lit_side };
+        let (behind, light) = self.gatherer.cross_lamps(from, &ray, 0.0, sampled, &mut self.traces.meter);
+        self.add_met(lane, gather_ray, light);
+        behind
+    }
+
     /// As `receive`, for a ray that meets light or anything but a constant Lambert surface, or is too short to be read.
     #[inline(never)]
     fn receive_other(
@@ -398,28 +417,41 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         index: u32,
     ) {
         let g = self.gatherer;
-        let weight = gather_ray.weight;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(index) << 16 | 2));
-        let light = g.lit.plan.direct.then_some(Effect::DirectLight);
+        let sampled = self.sampled(lane, gather_ray, solid_angle);
+        let (ray, mut end) = (self.packet.ray(lane), None);
+        let met = g.meet(ray, Some(hit), sampled, &mut rng, &mut self.traces.meter, &mut end);
+        self.add_met(lane, gather_ray, met.light);
+        if end.is_some() && g.lit.plan.follows() {
+            let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };
+            let weight = gather_ray.weight * met.through;
+            let target = Target { traces: &mut self.traces, lane, weight };
+            self.samples[lane].indirect += weight * g.outgoing(&mut end, footprint, &mut rng, target);
+        }
+    }
+
+    /// How the gather ray of a lane was found.
+    fn sampled(&self, lane: usize, gather_ray: &GatherRay, solid_angle: f32) -> Sampled {
         let lit_side = match &self.vertices[lane] {
             Some(vertex) => vertex.surface.bsdf.lit_side(),
             None => Some(self.lambert.ns[lane]),
         };
-        let width = Width::of_solid_angle(solid_angle);
-        let (pdf, kind) = (gather_ray.pdf, gather_ray.kind);
-        let sampled = Sampled { pdf, shares: g.shares, kind, light, lit_side, width };
-        let (ray, mut end) = (self.packet.ray(lane), None);
-        let met = g.meet(ray, Some(hit), sampled, &mut rng, &mut self.traces.meter, &mut end);
-        let sample = &mut self.samples[lane];
-        // What a mirror shows is no direct light, though it belongs to the same layer of the picture.
-        if g.lit.plan.direct || gather_ray.pdf.is_none() {
-            sample.direct += weight * met.light * g.direct_share;
+        Sampled {
+            pdf: gather_ray.pdf,
+            shares: self.gatherer.shares,
+            kind: gather_ray.kind,
+            light: self.gatherer.lit.plan.direct.then_some(Effect::DirectLight),
+            lit_side,
+            width: Width::of_solid_angle(solid_angle),
         }
-        if end.is_some() && g.lit.plan.follows() {
-            let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };
-            let weight = weight * met.through;
-            let target = Target { traces: &mut self.traces, lane, weight };
-            sample.indirect += weight * g.outgoing(&mut end, footprint, &mut rng, target);
+    }
+
+    /// Adds the light that a gather ray met. What a mirror shows is no direct light, though it belongs to the same layer of
+    /// the picture.
+    fn add_met(&mut self, lane: usize, gather_ray: &GatherRay, light: Rgb) {
+        let g = self.gatherer;
+        if g.lit.plan.direct || gather_ray.pdf.is_none() {
+            self.samples[lane].direct += gather_ray.weight * light * g.direct_share;
         }
     }
 }

@@ -95,14 +95,9 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         for _ in 0..MAX_TRANSPARENT {
             let mut hit = known.take().unwrap_or_else(|| lit.accel.intersect(&ray));
             if hit.is_some_and(|hit| lit.accel.is_lamp(hit.object)) {
-                hit = lit.accel.intersect(&Ray { mask: ray.mask & !visibility::LAMP, ..ray });
-                let until = hit.map_or(f32::INFINITY, |hit| met.distance + hit.t);
-                let (span, through) = (met.distance..until, met.through);
-                let owner = meter.enter_if(sampled.light);
-                lit.lights.lamps_crossed(from, ray.direction, span, sampled.kind, &mut |radiance, pdf| {
-                    met.light += through * radiance * sampled.weight(pdf);
-                });
-                meter.back(owner);
+                let (behind, light) = self.cross_lamps(from, &ray, met.distance, sampled, meter);
+                met.light += met.through * light;
+                hit = behind;
             }
             let Some(hit) = hit else {
                 let world = lit.lights.has_world().then_some(Effect::EnvironmentLight);
@@ -137,6 +132,28 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         }
         met.through = Rgb::BLACK;
         met
+    }
+
+    /// Lamps do not stop a ray: what is behind those that this one met first, and their light, weighted. `travelled` is how
+    /// far the ray's origin is from `from`, where the direction was chosen.
+    pub(super) fn cross_lamps(
+        &self,
+        from: Receiver,
+        ray: &Ray,
+        travelled: f32,
+        sampled: Sampled,
+        meter: &mut Meter,
+    ) -> (Option<Hit>, Rgb) {
+        let behind = self.lit.accel.intersect(&Ray { mask: ray.mask & !visibility::LAMP, ..*ray });
+        let until = behind.map_or(f32::INFINITY, |hit| travelled + hit.t);
+        let mut light = Rgb::BLACK;
+        let owner = meter.enter_if(sampled.light);
+        let lights = &self.lit.lights;
+        lights.lamps_crossed(from, ray.direction, travelled..until, sampled.kind, &mut |radiance, pdf| {
+            light += radiance * sampled.weight(pdf);
+        });
+        meter.back(owner);
+        (behind, light)
     }
 
     /// Light from outside the scene.
