@@ -5,6 +5,7 @@
 //! included (Jensen 1996). Roulette is unbiased; depth is cut only as a safeguard.
 
 mod deposit;
+mod pilot;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -26,6 +27,7 @@ use crate::scene::visibility;
 use crate::settings::PhotonPassSettings;
 
 pub use deposit::PyramidDeposits;
+pub use pilot::PhotonPilot;
 
 /// Photons of one task: long enough to hide scheduling, short enough to cancel at once.
 const BATCH: u64 = 4096;
