@@ -39,6 +39,9 @@ class Layout:
     def menu(self, name, **_):
         assert hasattr(bpy.types, name)
 
+    def template_curve_mapping(self, b_data, name):
+        assert name in b_data.bl_rna.properties
+
     def template_list(self, name, *_, **__):
         assert hasattr(bpy.types, name)
 

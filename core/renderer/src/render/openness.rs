@@ -6,7 +6,7 @@ use crate::accel::{Hit, LANES, Packet, Ray};
 use crate::lit_scene::LitScene;
 use crate::math::{Frame, Side};
 use crate::pyramid::SidePoint;
-use crate::scene::visibility;
+use crate::scene::{MIDDLE, visibility};
 
 /// How far inside a solid a surface is known to be hidden: so many cells of its level, or of the finest level that is
 /// everywhere, if these are larger.
@@ -37,7 +37,7 @@ pub(super) fn open(lit: &LitScene<'_>, base_cell_size: f32, points: &[SidePoint]
             for (lane, &i) in sixteen.iter().enumerate() {
                 let SidePoint { p, side, cell_size } = points[i];
                 let towards = Frame::new(side.normal).from_local(direction);
-                let ray = Ray::leaving(p, side.normal, towards, visibility::DIFFUSE);
+                let ray = Ray::leaving(p, side.normal, towards, visibility::DIFFUSE, MIDDLE);
                 packet.set(lane, &ray, DEEPEST * cell_size.max(base_cell_size));
             }
             lit.accel.intersect_packet(&mut packet);
