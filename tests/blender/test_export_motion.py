@@ -135,8 +135,9 @@ def test_camera_and_zoom(blurred, export):
 def test_shutter_curve(blurred, export):
     add_moving()
     b_mapping = blurred.render.motion_blur_shutter_curve
-    b_mapping.curves[0].points[0].location = (0.0, 0.0)
-    b_mapping.curves[0].points[0].handle_type = b_mapping.curves[0].points[1].handle_type = "VECTOR"
+    for b_point in b_mapping.curves[0].points:
+        b_point.location.y = b_point.location.x
+        b_point.handle_type = "VECTOR"
     b_mapping.update()
     curve = np.array(export().camera["shutter"])
     assert curve == pytest.approx(np.linspace(0.0, 1.0, len(curve)), abs=0.01)
@@ -214,7 +215,7 @@ def test_what_moves_is_smeared_and_said_so(blurred, rendered, outcome):
     picture = rendered()[:, :, 0]
     middle = picture[picture.shape[0] // 2]
     lit = middle[middle > 0.02]
-    assert lit.max() == pytest.approx(1.0, abs=0.05)
+    assert 0.8 < lit.max() < 1.01
     assert ((lit > 0.05) & (lit < 0.95)).sum() >= 3
     plan = {effect["name"]: effect for effect in outcome().stats["effects"]}
     assert plan["motion_blur"]["computed"]

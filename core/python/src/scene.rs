@@ -100,7 +100,8 @@ impl SceneBuilder {
 
     fn set_object_motion(&mut self, index: usize, steps: PyReadonlyArrayDyn<'_, f64>) -> PyResult<()> {
         let matrices: Vec<[f64; 16]> = rows("in motion", "steps", &steps, &[4, 4])?;
-        let matrix = |m: &[f64; 16]| record::matrix(&std::array::from_fn(|i| std::array::from_fn(|j| m[4 * i + j])));
+        let matrix =
+            |m: &[f64; 16]| record::matrix(&std::array::from_fn(|i| std::array::from_fn(|j| m[4 * i + j])));
         let matrices: Vec<_> = matrices.iter().map(matrix).collect();
         self.0.set_object_motion(index, &matrices).map_err(to_python)
     }

@@ -16,7 +16,7 @@ const HALF: f64 = 0.5;
 
 fn sharp_settings() -> RenderSettings {
     let mut settings = settings(1, 4, 1);
-    settings.gather.camera_samples = 256;
+    settings.gather.camera_samples = 1024;
     settings
 }
 
@@ -46,11 +46,17 @@ fn moving_square(from: f64, to: f64, camera: CameraRecord) -> Picture {
     finish_and_render(builder, &sharp_settings())
 }
 
-/// The light of each column through the middle of the picture, over that of the square.
+/// The light of each column, over that of the square: the mean of the four rows that the square crosses.
 fn row(picture: &Picture) -> Vec<f64> {
+    middle_rows(picture, 4)
+}
+
+fn middle_rows(picture: &Picture, count: usize) -> Vec<f64> {
     let radiance = picture.radiance();
-    let middle = (PIXELS / 2 * PIXELS) as usize;
-    radiance[middle..middle + PIXELS as usize].iter().map(|light| light / RADIANCE).collect()
+    let width = PIXELS as usize;
+    let rows = (width - count) / 2..(width + count) / 2;
+    let light = |column: usize| rows.clone().map(|row| radiance[row * width + column]).sum::<f64>();
+    (0..width).map(|column| light(column) / (count as f64 * RADIANCE)).collect()
 }
 
 /// How long each column is covered by a square that is at `place(time)`, weighted by how open the shutter is.
@@ -82,14 +88,14 @@ fn a_square_that_crosses_the_picture_leaves_a_trapezoid() {
     let found = row(&moving_square(-1.0, 1.0, view()));
     // Two metres in a time of one: the middle is covered for half of it.
     assert!((found[PIXELS as usize / 2] - 0.5).abs() < 0.01, "{found:?}");
-    assert_rows(&found, &coverage(|time| 2.0 * time - 1.0, |_| 1.0), 0.012);
+    assert_rows(&found, &coverage(|time| 2.0 * time - 1.0, |_| 1.0), 0.02);
 }
 
 #[test]
 fn the_shutter_curve_weighs_the_times() {
     let curve = vec![0.0, 0.5, 1.0];
     let found = row(&moving_square(-1.0, 1.0, CameraRecord { shutter: curve, ..view() }));
-    assert_rows(&found, &coverage(|time| 2.0 * time - 1.0, |time| time), 0.012);
+    assert_rows(&found, &coverage(|time| 2.0 * time - 1.0, |time| time), 0.02);
 }
 
 /// A camera that moves sees what it would see if it stood and everything moved the other way.
@@ -108,7 +114,7 @@ fn a_moving_camera_is_a_world_that_moves_the_other_way() {
     assert_eq!(reason(&camera_moves), "'camera' moves");
     let square_moves = moving_square(1.0, -1.0, base);
     assert_eq!(reason(&square_moves), "'Ball' moves");
-    assert_rows(&row(&camera_moves), &row(&square_moves), 0.012);
+    assert_rows(&row(&camera_moves), &row(&square_moves), 0.02);
 }
 
 /// A zoom: the square is seen at half of its size when the shutter opens, and at one and a half when it is shut.
@@ -122,7 +128,7 @@ fn a_zoom_is_blurred() {
     let mut builder = SceneBuilder::default();
     shine(&mut builder, floor(HALF as f32, 0.0), DMat4::IDENTITY);
     builder.set_camera(CameraRecord { steps: vec![step(1.5), step(0.5)], ..base.clone() });
-    let found = row(&finish_and_render(builder, &sharp_settings()));
+    let found = middle_rows(&finish_and_render(builder, &sharp_settings()), 2);
     // Column edges at x of the window's half are covered while x · width < HALF.
     for (column, light) in found.iter().enumerate().skip(8) {
         let middle = (column as f64 - 7.5) * 0.25;
@@ -136,7 +142,7 @@ fn a_zoom_is_blurred() {
 fn what_turns_stays_on_its_arcs() {
     let turned = |angle: f64| DMat4::from_quat(DQuat::from_rotation_z(angle));
     let mut builder = SceneBuilder::default();
-    let bar = floor(0.2, 0.0);
+    let bar = floor(0.4, 0.0);
     let positions = bar.positions.iter().map(|[x, y, z]| [1.5 + x, *y, *z]).collect();
     let (_, object) = shine(&mut builder, MeshArrays { positions, ..bar }, turned(0.0));
     let right = std::f64::consts::FRAC_PI_2;
@@ -151,9 +157,9 @@ fn what_turns_stays_on_its_arcs() {
         light += radiance * pixel * pixel;
         radius += radiance * pixel * pixel * (x * x + y * y);
     }
-    assert_close(light, RADIANCE * 0.16, 0.01);
+    assert_close(light, RADIANCE * 0.64, 0.03);
     // Mean square of the distance from the axis: of the square itself, and of the pixels.
-    assert_close(radius / light, 1.5 * 1.5 + 0.08 / 3.0 + pixel * pixel / 6.0, 0.01);
+    assert_close(radius / light, 1.5 * 1.5 + 0.32 / 3.0 + pixel * pixel / 6.0, 0.01);
 }
 
 /// A square whose corners move is one that moves; instances of it do so each in its own place.
@@ -163,12 +169,12 @@ fn what_changes_its_shape_is_blurred() {
     let square = floor(HALF as f32, 0.0);
     let step = |x: f32| square.positions.iter().map(|[px, y, z]| [px + x, *y, *z]).collect::<Vec<_>>();
     let steps = vec![Some(step(-1.0)), Some(step(1.0))];
-    let (mesh, _) = shine(&mut builder, square.clone(), DMat4::IDENTITY);
+    let (mesh, _) = shine(&mut builder, square, DMat4::IDENTITY);
     builder.set_mesh_motion(mesh, steps).expect("two steps");
     builder.set_camera(view());
     let picture = finish_and_render(builder, &sharp_settings());
     assert_eq!(reason(&picture), "'Ball' changes its shape");
-    assert_rows(&row(&picture), &coverage(|time| 2.0 * time - 1.0, |_| 1.0), 0.012);
+    assert_rows(&row(&picture), &coverage(|time| 2.0 * time - 1.0, |_| 1.0), 0.02);
 }
 
 fn reason(picture: &Picture) -> &str {
@@ -208,8 +214,8 @@ fn nothing_is_blurred_where_nothing_moves() {
         let pairs = a.radiance().into_iter().zip(b.radiance());
         pairs.map(|(a, b)| (a - b).abs()).sum::<f64>() / a.radiance().iter().sum::<f64>()
     };
-    assert!(difference(&still, &off) < 0.04, "{}", difference(&still, &off));
-    assert!(difference(&still, &blurred) > 0.08, "{}", difference(&still, &blurred));
+    let (same, other) = (difference(&still, &off), difference(&still, &blurred));
+    assert!(same < 0.005 && other > 0.02, "{same} {other}");
 }
 
 /// In a closed room of radiance L/(1 − albedo), whatever moves in it shines as all the rest: light is neither lost nor made
@@ -242,11 +248,14 @@ fn what_shines_and_moves_lights_from_where_it_is() {
     let build = |places: &[f64], moves: bool| {
         let mut builder = SceneBuilder::default();
         place(&mut builder, floor(2.0, 0.0), &[diffuse(0.8)]);
-        let down = quad([(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(x, y)| {
-            Vec3::new(0.2 * x, 0.2 * y, 1.0)
-        }));
+        let down = || {
+            quad(
+                [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)]
+                    .map(|(x, y)| Vec3::new(0.2 * x, 0.2 * y, 1.0)),
+            )
+        };
         for &x in places {
-            let (_, object) = shine(&mut builder, down.clone(), shifted(x));
+            let (_, object) = shine(&mut builder, down(), shifted(x));
             if moves {
                 builder.set_object_motion(object, &[shifted(-1.0), shifted(1.0)]).expect("two steps");
             }
@@ -266,8 +275,9 @@ fn what_shines_and_moves_lights_from_where_it_is() {
         expected.iter_mut().zip(still).for_each(|(sum, light)| *sum += light / 8.0);
     }
     assert_close(mean(&found), mean(&expected), 0.01);
+    let bound = 0.1 * mean(&found);
     for (found, expected) in found.iter().zip(&expected) {
-        assert!((found - expected).abs() < 0.1 * mean(&found), "{found} is not {expected}");
+        assert!((found - expected).abs() < bound, "{found} is not {expected}");
     }
 }
 

@@ -135,7 +135,8 @@ pub struct Landings {
 pub fn landings(lit: &LitScene<'_>, light: usize, seen: &Seen, seed: u32) -> Landings {
     const PHOTONS: u64 = 4096;
     let lands = |emission: &Emission, rng: &mut Rng| {
-        let (ray, _) = lit.entering(emission.origin.as_dvec3(), emission.direction, visibility::DIFFUSE, MIDDLE);
+        let (ray, _) =
+            lit.entering(emission.origin.as_dvec3(), emission.direction, visibility::DIFFUSE, MIDDLE);
         first_scatterer(lit, ray, MAX_DEPTH, rng).is_some_and(|surface| seen.holds(surface.p))
     };
     let fluxes: Vec<Option<f64>> = (0..PHOTONS)

@@ -99,7 +99,8 @@ impl<'a> LitScene<'a> {
             return self.lights.emitter_pdf(from, hit.object, hit.primitive, ray.direction, distance);
         }
         let choice = self.lights.emitter_choice(from, hit.object, hit.primitive);
-        choice * Triangle::new(self.corners_at(hit.object, hit.primitive, ray.time)).pdf(ray.direction, distance)
+        choice
+            * Triangle::new(self.corners_at(hit.object, hit.primitive, ray.time)).pdf(ray.direction, distance)
     }
 
     /// A point that was chosen to light a receiver, where it is at a time; `None` where it gives nothing then.
@@ -114,7 +115,8 @@ impl<'a> LitScene<'a> {
         let triangle = Triangle::new(self.corners_at(point.object, point.primitive, time));
         let along = triangle.point(point.barycentric) - from.p;
         let (distance, wi) = (along.length(), along.try_normalize()?);
-        let pdf = self.lights.emitter_choice(from, point.object, point.primitive) * triangle.pdf(wi, distance);
+        let pdf =
+            self.lights.emitter_choice(from, point.object, point.primitive) * triangle.pdf(wi, distance);
         if !(pdf > 0.0 && pdf.is_finite()) {
             return None;
         }
@@ -132,12 +134,8 @@ impl<'a> LitScene<'a> {
     /// A photon that leaves a mesh, as it leaves it at a time.
     #[inline(never)]
     pub(super) fn moved_emission(&self, emission: Emission, point: EmitterPoint, time: f32) -> Emission {
-        let hit = Hit {
-            t: 0.0,
-            barycentric: point.barycentric,
-            object: point.object,
-            primitive: point.primitive,
-        };
+        let hit =
+            Hit { t: 0.0, barycentric: point.barycentric, object: point.object, primitive: point.primitive };
         let [still, now] = self.triangles(&hit, time);
         let (turn, factor) = (turn(&still, &now), now.area / still.area);
         Emission {

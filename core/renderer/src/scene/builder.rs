@@ -165,7 +165,7 @@ impl SceneBuilder {
         };
         let positions = |step: Option<_>| step.unwrap_or_else(|| arrays.positions.clone());
         arrays.steps = steps.into_iter().map(positions).collect();
-        arrays.check_lengths()
+        arrays.check_lengths().inspect_err(|_| arrays.steps.clear())
     }
 
     /// Adds a lamp and returns its index.
@@ -362,7 +362,9 @@ fn box_about([a, b]: [DVec3; 2], transform: &DAffine3) -> [DVec3; 2] {
         let pick = |bit: i32, x: f64, y: f64| if corner & bit == 0 { x } else { y };
         transform.transform_point3(DVec3::new(pick(1, a.x, b.x), pick(2, a.y, b.y), pick(4, a.z, b.z)))
     };
-    (0..8).map(corner).fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
+    (0..8)
+        .map(corner)
+        .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
 }
 
 /// Bounds of all objects at all times.
