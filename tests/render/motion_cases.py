@@ -67,7 +67,7 @@ def _turning_block() -> None:
 
 
 def _moving_camera() -> None:
-    _ball(shader("BsdfGlossy", Color=GOLD, Roughness=0.3))
+    _ball(shader("BsdfDiffuse", Color=BLUE))
     camera = bpy.context.scene.camera
     x, y, z = camera.location
     animate(camera, "location", ((x - 0.4, y, z), (x + 0.4, y, z)))

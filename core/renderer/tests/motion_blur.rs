@@ -190,7 +190,8 @@ fn room(shift: Vec3, material: rgp_renderer::scene::record::MaterialRecord, swit
     place(&mut builder, walls.0, &[walls.1]);
     let material = builder.add_material(material) as u32;
     let mesh = builder.add_mesh(ball).expect("a mesh");
-    let object = builder.add_object("Ball", mesh, DMat4::IDENTITY, vec![material], visibility::ALL).unwrap();
+    let object =
+        builder.add_object("Ball", mesh, DMat4::IDENTITY, vec![material], visibility::ALL).expect("a mesh");
     if shift != Vec3::ZERO {
         let steps = [-shift, shift].map(|shift| DMat4::from_translation(shift.as_dvec3()));
         builder.set_object_motion(object, &steps).expect("two steps");
@@ -228,7 +229,8 @@ fn a_furnace_stays_even_whatever_moves_in_it() {
     place(&mut builder, cuboid(Vec3::splat(-1.0), Vec3::splat(1.0)), std::slice::from_ref(&shines));
     let material = builder.add_material(shines) as u32;
     let mesh = builder.add_mesh(sphere(3, 0.4, Vec3::ZERO)).expect("a mesh");
-    let object = builder.add_object("Ball", mesh, DMat4::IDENTITY, vec![material], visibility::ALL).unwrap();
+    let object =
+        builder.add_object("Ball", mesh, DMat4::IDENTITY, vec![material], visibility::ALL).expect("a mesh");
     let step = |side: f64| {
         DMat4::from_translation(DVec3::new(0.0, 0.4, 0.3) * side) * DMat4::from_rotation_y(0.8 * side)
     };
