@@ -50,6 +50,12 @@ class SceneBuilder:
     def set_object_info(self, index: int, record: dict[str, Any]) -> None:
         self.objects[index]["info"] = record
 
+    def set_object_motion(self, index: int, steps: Any) -> None:
+        self.objects[index]["steps"] = steps
+
+    def set_mesh_motion(self, index: int, steps: list[Any]) -> None:
+        self.meshes[index]["steps"] = steps
+
     def add_lamp(self, record: dict[str, Any]) -> int:
         self.lamps.append(record)
         return len(self.lamps) - 1

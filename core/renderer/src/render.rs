@@ -98,6 +98,9 @@ fn passes(
     if lit.plan.direct {
         stats.effects[Effect::DirectLight as usize].bytes = lit.lights.bytes();
     }
+    if lit.plan.motion_blur {
+        stats.effects[Effect::MotionBlur as usize].bytes = scene.motion_bytes();
+    }
     stats.effects[Effect::EnvironmentLight as usize].bytes = lit.lights.world_bytes();
     stats.effects[Effect::EmissiveMeshes as usize].bytes = lit.lights.emitter_bytes();
 
@@ -268,7 +271,8 @@ fn light<'a>(
     let emission: Vec<_> = materials.iter().map(PreparedMaterial::emission).collect();
     let lights = Lights::with_world(scene, &emission, &world, environment);
     let proxies = lights.lamp_proxies();
-    let accel = Accel::build(scene, &proxies, library, settings.render.threads as usize, progress)?;
+    let threads = settings.render.threads as usize;
+    let accel = Accel::build(scene, &proxies, plan.motion_blur, library, threads, progress)?;
     Ok(LitScene { accel, materials, lights, plan })
 }
 

@@ -8,7 +8,7 @@ from functools import partial
 
 import bpy
 
-from tests.render import cases, node_cases, path_cases
+from tests.render import cases, motion_cases, node_cases, path_cases
 
 
 @dataclass(frozen=True)
@@ -26,6 +26,7 @@ def features() -> list[Feature]:
     return [
         *(Feature(case, partial(cases.build, case)) for case in cases.CASES),
         *(Feature(f"path/{name}", partial(path_cases.build, name)) for name in path_cases.PATHS),
+        *(Feature(f"motion/{name}", partial(motion_cases.build, name)) for name in motion_cases.MOTIONS),
         *(
             Feature(f"node/{name}", partial(node_cases.node_scene, case), box_filter=True)
             for name, case in node_cases.NODES.items()

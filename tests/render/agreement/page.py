@@ -18,6 +18,7 @@ _TITLES = {
     "lamp": "Lamps and the world",
     "material": "Shaders, under an even world and under a square lamp",
     "path": "Ways of light",
+    "motion": "Motion blur",
     "node": "Nodes",
 }
 

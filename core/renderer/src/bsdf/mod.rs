@@ -31,7 +31,7 @@ mod varying;
 use std::ops::{BitOr, Deref};
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use smallvec::SmallVec;
 
 use crate::color::Rgb;
@@ -218,6 +218,14 @@ impl Bsdf<'_> {
     #[must_use]
     pub fn wo(&self) -> Vec3 {
         self.wo
+    }
+
+    /// The same, of a surface that was turned, with where the ray came from.
+    #[must_use]
+    pub fn turned(self, rotation: Quat) -> Self {
+        let frame = &self.frame;
+        let frame = ShadingFrame { ns: rotation * frame.ns, ng: rotation * frame.ng, ..*frame };
+        Self { wo: rotation * self.wo, frame, ..self }
     }
 
     /// Shading normal of the side that light must come from to reach `wo`; `None` where it may come through.

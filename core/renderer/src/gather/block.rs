@@ -14,7 +14,7 @@ use crate::film::{BLOCK, PixelSample, TileRect};
 use crate::light::Receiver;
 use crate::lit_scene::ray_kind;
 use crate::sampling::{PixelSeeds, Rng, hash, shuffled_point, shuffled_points};
-use crate::scene::visibility;
+use crate::scene::{MIDDLE, visibility};
 use crate::settings::GatherSampling;
 
 use super::camera::{CameraRay, camera_ray};
@@ -126,13 +126,14 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             self.samples[lane] = PixelSample { offset, taken: true, ..Default::default() };
             let offset = DVec2::new(f64::from(offset[0]), f64::from(offset[1]));
             let position = DVec2::new(f64::from(frame_x), f64::from(frame_y)) + 0.5 + offset;
+            let time = if g.lit.plan.motion_blur { self.time(lane) } else { MIDDLE };
             let CameraRay { ray, reach, start } = match &g.lens {
-                None => camera_ray(camera, g.lit, position, None),
+                None => camera_ray(camera, g.lit, position, None, time),
                 Some(lens) => {
                     let owner = self.traces.meter.enter(Effect::DepthOfField);
                     let point = lens.point(shuffled_point(self.sample, hash(key, 4) as u32));
                     self.traces.meter.back(owner);
-                    camera_ray(camera, g.lit, position, Some((lens, point)))
+                    camera_ray(camera, g.lit, position, Some((lens, point)), time)
                 }
             };
             self.start[lane] = start;
@@ -151,12 +152,21 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         }
     }
 
+    /// When the camera sample of a lane is taken, while the shutter is open.
+    fn time(&mut self, lane: usize) -> f32 {
+        let owner = self.traces.meter.enter(Effect::MotionBlur);
+        let [u, _] = shuffled_point(self.sample, hash(self.keys[lane], 5) as u32);
+        let time = self.gatherer.lit.accel.scene().camera.shutter.time(u);
+        self.traces.meter.back(owner);
+        time
+    }
+
     /// Takes the common case: the camera sees a surface that is nothing but a constant Lambert reflector.
     fn start_lambert(&mut self, lane: usize, ray: &Ray, hit: Option<Hit>) -> bool {
         let g = self.gatherer;
         let Some(hit) = hit.filter(|hit| !g.lit.accel.is_lamp(hit.object)) else { return false };
         let (ng, material) = g.lit.accel.triangle(hit.object, hit.primitive);
-        if g.sampling != GatherSampling::Cosine || g.is_holdout(&hit) {
+        if g.sampling != GatherSampling::Cosine || g.is_holdout(&hit) || g.lit.moves(hit.object) {
             return false;
         }
         let albedo = match g.plain[material] {
@@ -170,7 +180,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         };
         let frame = g.lit.frame(ray, &hit, ng);
         let p = ray.origin + ray.direction * hit.t;
-        self.lambert.put(lane, p, frame.ng, frame.ns, albedo);
+        self.lambert.put(lane, p, frame.ng, frame.ns, albedo, ray.time);
         self.samples[lane].alpha = 1.0;
         true
     }
@@ -207,7 +217,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             throughput *= sample.weight;
             sampled.kind = ray_kind(&sample);
             sampled.width = sampled.width.after(met.distance);
-            ray = Ray::leaving(surface.p, surface.ng, sample.wi, sampled.kind | g.lit.accel.lamp_bit());
+            ray = surface.leaving(sample.wi, sampled.kind | g.lit.accel.lamp_bit());
             self.traces.rays.camera += 1;
         }
         self.traces.meter.back(owner);
@@ -258,11 +268,11 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     fn shadow(&self, lane: usize, u: [f32; 3]) -> Option<ShadowRay> {
         let g = self.gatherer;
         if self.lambert.set[lane] {
-            let sample = g.lit.sample_direct(self.lambert.receiver(lane), u)?;
+            let sample = g.lit.sample_direct(self.lambert.receiver(lane), u, self.lambert.time[lane])?;
             return lambert_shadow_ray(&self.lambert, lane, &sample, g.shares);
         }
         let vertex = self.vertices[lane].as_ref()?;
-        let sample = g.lit.sample_direct(vertex.surface.receiver(), u)?;
+        let sample = g.lit.sample_direct(vertex.surface.receiver(), u, vertex.surface.time)?;
         let mut shadow = shadow_ray(&vertex.surface, &sample, LobeSet::ALL, LobeSet::ALL, g.shares)?;
         shadow.radiance *= vertex.throughput;
         Some(shadow)
@@ -316,7 +326,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             else {
                 continue;
             };
-            let leaving = Ray::leaving(vertex.surface.p, vertex.surface.ng, direction, ray.kind | lamps);
+            let leaving = vertex.surface.leaving(direction, ray.kind | lamps);
             self.packet.set(lane, &leaving, f32::INFINITY);
             self.others[lane] = Some(ray);
         }

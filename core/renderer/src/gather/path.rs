@@ -110,8 +110,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             let is_hole = sampled.kind == visibility::CAMERA && self.is_holdout(&hit);
             if !surface.bsdf.emission.is_black() && !is_hole {
                 let owner = meter.enter(Effect::EmissiveMeshes);
-                let (direction, distance) = (ray.direction, met.distance);
-                let pdf = lit.lights.emitter_pdf(from, hit.object, hit.primitive, direction, distance);
+                let pdf = lit.emitter_pdf(from, &ray, &hit, met.distance);
                 met.light += met.through * surface.bsdf.emission * sampled.weight(pdf);
                 meter.back(owner);
             }
@@ -125,7 +124,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 return met;
             }
             met.through = met.through * transparency * (1.0 / chance);
-            ray = Ray::leaving(surface.p, surface.ng, ray.direction, ray.mask);
+            ray = surface.leaving(ray.direction, ray.mask);
             *end = None;
             meter.enter(Effect::AlphaTransparency);
             meter.count(Effect::AlphaTransparency, 1);
@@ -219,7 +218,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 break;
             }
             let kind = ray_kind(&sample);
-            let ray = Ray::leaving(surface.p, surface.ng, sample.wi, kind | self.lit.accel.lamp_bit());
+            let ray = surface.leaving(sample.wi, kind | self.lit.accel.lamp_bit());
             target.traces.rays.gather += 1;
             let hit = self.lit.accel.intersect(&ray);
             let readable = hit.filter(|_| !sample.is_delta).and_then(|hit| {
@@ -260,6 +259,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         target: &mut Target<'_, E::Place>,
     ) -> Option<Rgb> {
         let reads = self.lit.plan.reads;
+        let at_rest = self.lit.moves(surface.hit.object).then(|| self.lit.at_rest(surface).0);
+        let surface = at_rest.as_ref().unwrap_or(surface);
         if !surface.bsdf.has(reads.and(LobeSet::ROUGH)) {
             return target.radiance(self.estimator, surface, reads, footprint, throughput, rng);
         }
@@ -300,7 +301,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         if !surface.bsdf.has(counted) {
             return Rgb::BLACK;
         }
-        let sample = self.lit.sample_direct(surface.receiver(), u);
+        let sample = self.lit.sample_direct(surface.receiver(), u, surface.time);
         let shadow = sample.and_then(|sample| shadow_ray(surface, &sample, lobes, counted, Shares::EVEN));
         let Some(shadow) = shadow else { return Rgb::BLACK };
         shadow.radiance * transmittance(self.lit, &shadow, traces)

@@ -23,7 +23,7 @@ use crate::lit_scene::{LitScene, lobes_lit, ray_kind};
 use crate::progress::Progress;
 use crate::pyramid::SETS;
 use crate::sampling::PhotonSampler;
-use crate::scene::visibility;
+use crate::scene::{MIDDLE, visibility};
 use crate::settings::PhotonPassSettings;
 
 pub use deposit::PyramidDeposits;
@@ -118,17 +118,19 @@ impl<S: PhotonSink> Tracer<'_, S> {
     /// Follows one photon from its lamp; gives the number of segments traced.
     fn photon(&self, mut sampler: PhotonSampler, landed: &mut S::Batch, meter: &mut Meter) -> u64 {
         let u = [sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw()];
-        let Some(emission) = self.lit.emit(u) else { return 0 };
+        let camera = &self.lit.accel.scene().camera;
+        let time = if self.lit.plan.motion_blur { camera.shutter.time(sampler.time()) } else { MIDDLE };
+        let Some(emission) = self.lit.emit(u, time) else { return 0 };
         let flux = emission.flux * self.share;
         let leaving = match emission.normal {
             Some(normal) => {
-                Ray::leaving(emission.origin, normal, emission.direction, visibility::DIFFUSE).origin
+                Ray::leaving(emission.origin, normal, emission.direction, visibility::DIFFUSE, time).origin
             }
             None => emission.origin,
         };
         // On its first way a photon is a shadow ray the other way round.
         let mask = visibility::DIFFUSE | visibility::SHADOW;
-        let (mut ray, mut travelled) = self.lit.entering(leaving.as_dvec3(), emission.direction, mask);
+        let (mut ray, mut travelled) = self.lit.entering(leaving.as_dvec3(), emission.direction, mask, time);
         let lobes = lobes_lit(emission.visibility);
         let mut segments = 0;
         for _ in 0..MAX_PASSED_THROUGH {
@@ -143,8 +145,8 @@ impl<S: PhotonSink> Tracer<'_, S> {
             if emission.casts_shadow && visible_to & visibility::SHADOW != 0 {
                 break;
             }
-            let ng = self.lit.accel.geometric_normal(hit.object, hit.primitive);
-            ray = Ray::leaving(ray.origin + ray.direction * hit.t, ng, ray.direction, mask);
+            let ng = self.lit.normal_met(&ray, &hit);
+            ray = Ray::leaving(ray.origin + ray.direction * hit.t, ng, ray.direction, mask, time);
         }
         segments
     }
@@ -166,8 +168,11 @@ impl<S: PhotonSink> Tracer<'_, S> {
                 let glossy = bsdf.has(lobes.and(LobeSet::ROUGH));
                 let at = if glossy { [sampler.draw(), sampler.draw()] } else { [0.0; 2] };
                 let glossy = glossy && self.lit.plan.direction_bins();
-                let flux = flux * bsdf.frame.irradiance_factor(-ray.direction);
-                let landing = Landing { surface: &surface, set: self.set, flux, glossy, at };
+                let at_rest = self.lit.moves(hit.object).then(|| self.lit.at_rest(&surface));
+                let (stored, grown) =
+                    at_rest.as_ref().map_or((&surface, 1.0), |(at_rest, grown)| (at_rest, *grown));
+                let flux = flux * (bsdf.frame.irradiance_factor(-ray.direction) * grown);
+                let landing = Landing { surface: stored, set: self.set, flux, glossy, at };
                 let owner = meter.enter_if(glossy.then_some(Effect::IndirectGlossy));
                 self.sink.land(landed, &landing);
                 meter.back(owner);
@@ -183,7 +188,7 @@ impl<S: PhotonSink> Tracer<'_, S> {
                 break;
             }
             flux = flux * next.weight * (1.0 / survival);
-            ray = Ray::leaving(surface.p, surface.ng, next.direction, next.kind);
+            ray = surface.leaving(next.direction, next.kind);
             if !next.straight {
                 lobes = LobeSet::ALL;
             }

@@ -9,7 +9,7 @@ use crate::lit_scene::LitScene;
 use crate::math::{Frame, Side};
 use crate::progress::Progress;
 use crate::pyramid::{SidePoint, SurfaceTriangle, Surroundings};
-use crate::scene::visibility;
+use crate::scene::{MIDDLE, visibility};
 
 /// How far inside a solid a surface is known to be hidden (cells).
 const DEEPEST: f32 = 16.0;
@@ -85,7 +85,7 @@ impl Surroundings for SceneSurroundings<'_> {
                 for (lane, &i) in sixteen.iter().enumerate() {
                     let SidePoint { p, side, cell_size } = points[i];
                     let towards = Frame::new(side.normal).from_local(direction);
-                    let ray = Ray::leaving(p, side.normal, towards, visibility::DIFFUSE);
+                    let ray = Ray::leaving(p, side.normal, towards, visibility::DIFFUSE, MIDDLE);
                     packet.set(lane, &ray, DEEPEST * cell_size);
                 }
                 self.lit.accel.intersect_packet(&mut packet);

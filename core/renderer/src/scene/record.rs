@@ -371,6 +371,22 @@ pub struct CameraRecord {
     /// Its lens; without one it is a pinhole.
     #[serde(default)]
     pub lens: Option<LensRecord>,
+    /// What else it is at even times while the shutter is open, the middle left out; empty where it stays the same.
+    #[serde(default)]
+    pub steps: Vec<CameraStep>,
+    /// How open the shutter is at even times, from when it opens until it is shut; empty where that is all the same.
+    #[serde(default)]
+    pub shutter: Vec<f64>,
+}
+
+/// A camera at one time.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraStep {
+    /// See [`CameraRecord`].
+    pub world_from_camera: [[f64; 4]; 4],
+    /// See [`CameraRecord`].
+    pub window: [f64; 4],
 }
 
 /// Light from everywhere outside.
