@@ -72,6 +72,9 @@ pub trait Estimator: Sync {
     /// What is read is radiance that leaves towards `wo`, the surface's albedo included, and not irradiance.
     const READS_RADIANCE: bool = false;
 
+    /// Light on the far side of a surface can be read too, for what scatters it through; else such surfaces are followed.
+    const READS_BOTH_SIDES: bool = false;
+
     /// Answers are put off until many hits have come together, see [`Estimator::answer`].
     const DEFERS: bool = false;
 

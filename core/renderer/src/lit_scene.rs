@@ -129,10 +129,13 @@ impl<'a> LitScene<'a> {
     }
 }
 
-/// The kind of a ray that was sampled from a BSDF, as a bit of [`visibility`].
+/// The kind of a ray that was sampled from a BSDF, as bits of [`visibility`]: as in Cycles, one that was scattered through a
+/// surface is both diffuse and a transmission.
 #[must_use]
 pub fn ray_kind(sample: &BsdfSample) -> u32 {
-    if sample.is_transmission {
+    if sample.class == LobeSet::TRANSLUCENT {
+        visibility::DIFFUSE | visibility::TRANSMISSION
+    } else if sample.is_transmission {
         visibility::TRANSMISSION
     } else if sample.class == LobeSet::DIFFUSE {
         visibility::DIFFUSE
@@ -146,7 +149,7 @@ pub fn ray_kind(sample: &BsdfSample) -> u32 {
 pub fn lobes_lit(visible_to: u32) -> LobeSet {
     let mut set = LobeSet::EMPTY;
     if visible_to & visibility::DIFFUSE != 0 {
-        set = set | LobeSet::DIFFUSE;
+        set = set | LobeSet::DIFFUSE | LobeSet::TRANSLUCENT;
     }
     if visible_to & visibility::GLOSSY != 0 {
         set = set | LobeSet::ROUGH;

@@ -189,8 +189,8 @@ impl EffectsPlan {
         planned.extend([depth_of_field(scene, settings), motion_blur(scene, settings)]);
         let computed = |effect: Effect| planned[effect as usize].is_computed();
         let lobes = |effect, set| if computed(effect) { set } else { LobeSet::EMPTY };
-        let reads =
-            lobes(Effect::IndirectDiffuse, LobeSet::DIFFUSE) | lobes(Effect::IndirectGlossy, LobeSet::ROUGH);
+        let reads = lobes(Effect::IndirectDiffuse, LobeSet::DIFFUSE | LobeSet::TRANSLUCENT)
+            | lobes(Effect::IndirectGlossy, LobeSet::ROUGH);
         Self {
             direct: computed(Effect::DirectLight),
             light_samples,
@@ -326,7 +326,7 @@ fn path_classes(
     let receiver = has(LobeSet::NON_DELTA, "surface");
     let because = [
         (Effect::DirectLight, light.clone().filter(|_| receiver.is_some())),
-        (Effect::IndirectDiffuse, lit(has(LobeSet::DIFFUSE, "diffuse surface"))),
+        (Effect::IndirectDiffuse, lit(has(LobeSet::DIFFUSE | LobeSet::TRANSLUCENT, "diffuse surface"))),
         (Effect::IndirectGlossy, lit(has(LobeSet::ROUGH, "glossy surface"))),
         (Effect::Caustics, lit(first(&sharp_kind).filter(|_| receiver.is_some()))),
     ];
@@ -367,7 +367,7 @@ fn motion_blur(scene: &Scene, settings: &EffectSettings) -> Planned {
 
 /// What a material with lobes that are followed is called.
 fn sharp_kind(material: &PreparedMaterial) -> Option<&'static str> {
-    let refracts = !material.is_opaque() && material.transparency().is_black();
+    let refracts = material.refracts() && material.transparency().is_black();
     material.classes().intersects(LobeSet::FOLLOWED).then_some(if refracts { "glass" } else { "mirror" })
 }
 

@@ -198,9 +198,12 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             let mut end = None;
             let met = g.meet(ray, first.take(), sampled, &mut rng, &mut self.traces.meter, &mut end);
             let sample = &mut self.samples[lane];
-            if met.is_hole || end.is_some() || depth > 0 || !transparent_film {
+            let is_film = met.hole == 0.0 && end.is_none() && transparent_film;
+            if depth > 0 || !is_film {
                 sample.direct += throughput * met.light;
-                sample.alpha = f32::from(u8::from(!met.is_hole));
+            }
+            if depth == 0 && !is_film {
+                sample.alpha = 1.0 - met.hole;
             }
             let Some(surface) = end else { break };
             throughput *= met.through;

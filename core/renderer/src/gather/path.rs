@@ -57,8 +57,8 @@ pub(super) struct Met {
     pub(super) distance: f32,
     /// Share of light from the surface that arrives through what is transparent before it.
     pub(super) through: Rgb,
-    /// True where the camera sees a hole in the picture; there is no surface then.
-    pub(super) is_hole: bool,
+    /// Share of a camera ray that sees a hole in the picture. Where the object is one, there is no surface.
+    pub(super) hole: f32,
 }
 
 impl<'a, E: Estimator> Gatherer<'a, E> {
@@ -89,7 +89,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         end: &mut Option<Surface<'a>>,
     ) -> Met {
         *end = None;
-        let mut met = Met { light: Rgb::BLACK, distance: 0.0, through: Rgb::WHITE, is_hole: false };
+        let mut met = Met { light: Rgb::BLACK, distance: 0.0, through: Rgb::WHITE, hole: 0.0 };
         let (from, lit) = (Receiver { p: ray.origin, normal: sampled.lit_side }, self.lit);
         let mut known = first;
         for _ in 0..MAX_TRANSPARENT {
@@ -107,7 +107,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             };
             met.distance += hit.t;
             let surface = end.insert(lit.surface(&ray, hit, sampled.width.at(met.distance)));
-            let is_hole = sampled.kind == visibility::CAMERA && self.is_holdout(&hit);
+            let by_camera = sampled.kind == visibility::CAMERA;
+            let is_hole = by_camera && self.is_holdout(&hit);
             if !surface.bsdf.emission.is_black() && !is_hole {
                 let owner = meter.enter(Effect::EmissiveMeshes);
                 let pdf = lit.emitter_pdf(from, &ray, &hit, met.distance);
@@ -117,9 +118,12 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             let transparency = surface.bsdf.transparency;
             let chance = transparency.mean().clamp(0.0, 1.0);
             if chance <= 0.0 || rng.draw() >= chance {
-                met.through = met.through * (1.0 / (1.0 - chance).max(f32::MIN_POSITIVE));
+                let per_chance = 1.0 / (1.0 - chance).max(f32::MIN_POSITIVE);
+                met.through = met.through * per_chance;
                 if is_hole {
-                    (met.is_hole, *end) = (true, None);
+                    (met.hole, *end) = (1.0, None);
+                } else if by_camera {
+                    met.hole = (surface.bsdf.holdout() * per_chance).min(1.0);
                 }
                 return met;
             }
@@ -259,6 +263,9 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         target: &mut Target<'_, E::Place>,
     ) -> Option<Rgb> {
         let reads = self.lit.plan.reads;
+        if !E::READS_BOTH_SIDES && surface.bsdf.has(reads.and(LobeSet::TRANSLUCENT)) {
+            return None;
+        }
         let at_rest = self.lit.moves(surface.hit.object).then(|| self.lit.at_rest(surface).0);
         let surface = at_rest.as_ref().unwrap_or(surface);
         if !surface.bsdf.has(reads.and(LobeSet::ROUGH)) {
