@@ -18,6 +18,7 @@
 mod accumulator;
 mod bins;
 mod build;
+mod cell_id;
 mod class;
 mod clip;
 mod grid;
@@ -33,6 +34,7 @@ use glam::{IVec3, Vec3};
 
 pub use accumulator::{Accumulator, Landing, Leaving, SETS};
 pub use bins::{DirectionBins, Lanes};
+pub use cell_id::CellId;
 pub use class::NormalClasses;
 pub use grid::{Grid, Reading};
 pub use layout::{Layout, SidePoint, SurfaceTriangle};
