@@ -44,8 +44,8 @@ def rows(stats: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def _audit_rows(audit: Mapping[str, Any] | None) -> list[tuple[str, str]]:
-    """What an audit says of the pyramid; nothing where there was none."""
-    if not audit:
+    """What an audit says of the pyramid; nothing where there was none, or nothing to follow."""
+    if not audit or not audit["hits"]:
         return []
     lines = [("Pyramid bias", f"{audit['bias']:+.2g} % ± {audit['interval']:.2g} %")]
     if audit["cells_disagreeing"]:

@@ -16,9 +16,6 @@ from .audit_image import draw_audit
 from .exr import Picture
 from .scene_options import add_scene_options, apply_scene_options
 
-_AUDITED = 1000
-"""Gather hits of which one is audited, where the scene does not say."""
-
 _EPILOG = """\
 SCENE.blend is rendered as F12 would, its compositor and sequencer left aside. Settings are those of the panels, such as
 
@@ -48,7 +45,7 @@ def add_arguments(commands: Any) -> None:
         "--audit-image",
         metavar="OUT.png",
         type=Path,
-        help=f"audit the pyramid (one hit in {_AUDITED}, or as gather.audit says) and draw the cells that are wrong",
+        help="draw the cells that the audit found wrong over the picture",
     )
     add_scene_options(parser)
     parser.add_argument("--engine", choices=("RGP", "CYCLES"), default="RGP")
@@ -68,7 +65,7 @@ def run(options: argparse.Namespace) -> None:
     blender_scene.choose_engine(b_scene, options.engine)
     apply_scene_options(b_scene, options, options.engine)
     if wants_audit and b_scene.rgp.gather.audit == 0:
-        b_scene.rgp.gather.audit = _AUDITED
+        raise CommandError("--audit-image needs an audit, and gather.audit is 0")
     start = time.perf_counter()
     channels = _render(b_scene, wants_indirect=options.indirect is not None, wants_audit=wants_audit)
     stats = _stats(options.engine, time.perf_counter() - start)

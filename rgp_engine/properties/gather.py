@@ -83,7 +83,7 @@ class RGPGatherSettings(bpy.types.PropertyGroup):
         name="Audit One In",
         description="One gather hit in so many is also followed along a path to its end, which measures how far the "
         "pyramid is off; 0 for none; changes nothing in the picture",
-        default=0,
+        default=1000,
         min=0,
         max=1_000_000,
         soft_max=10_000,

@@ -132,7 +132,10 @@ def test_cycles_runs_the_same_way(blend, tmp_path):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--set", "gather.rayz=3"], "there is no setting gather.rayz; there are gather.audit, gather.camera_samples, "),
+        (
+            ["--set", "gather.rayz=3"],
+            "there is no setting gather.rayz; there are gather.audit, gather.camera_samples, ",
+        ),
         (
             ["--set", "gatherer.rays=3"],
             "there is no group of settings gatherer; there are photon_pass, pyramid, ",

@@ -73,11 +73,11 @@ def test_table():
 
 
 def test_audit():
-    audit = {"bias": -0.123, "interval": 0.0812, "cells_tested": 1200, "cells_disagreeing": 0}
+    audit = {"hits": 900, "bias": -0.123, "interval": 0.0812, "cells_tested": 1200, "cells_disagreeing": 0}
     assert rows({"seconds": {}, "audit": audit}) == [("Pyramid bias", "-0.12 % ± 0.081 %")]
     found = rows({"seconds": {}, "audit": audit | {"cells_disagreeing": 3}})
     assert found[1] == ("Cells that disagree", "3 of 1,200")
-    assert rows({"seconds": {}, "audit": None}) == []
+    assert rows({"seconds": {}, "audit": None}) == rows({"seconds": {}, "audit": audit | {"hits": 0}}) == []
 
 
 def test_effects():

@@ -212,7 +212,7 @@ impl Default for GatherSettings {
             retrace_distance: 1.732_050_8,
             max_depth: 32,
             estimator: EstimatorKind::Pyramid,
-            audit: 0,
+            audit: 1000,
             photons_per_estimate: 50,
         }
     }
