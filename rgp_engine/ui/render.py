@@ -54,7 +54,7 @@ class RGP_PT_gather(EnginePanel, Panel):
         """Draws the panel."""
         b_gather = context.scene.rgp.gather
         draw_settings(self.layout, b_gather, "rays", "camera_samples", "light_samples")
-        draw_settings(self.layout, b_gather, "sampling", "retrace_distance", "max_depth")
+        draw_settings(self.layout, b_gather, "sampling", "retrace_distance", "max_depth", "audit")
 
 
 class RGP_PT_stop(EnginePanel, Panel):

@@ -123,7 +123,12 @@ class Session:
 
     def picture(self, layer: str) -> Any:
         _, _, width, height = self._region
-        channels, value = {"combined": (4, 0.25), "indirect": (3, 0.125), "error": (1, 0.01)}[layer]
+        channels, value = {
+            "combined": (4, 0.25),
+            "indirect": (3, 0.125),
+            "error": (1, 0.01),
+            "audit": (1, 0.5),
+        }[layer]
         return np.full((height, width, channels), value, np.float32)
 
     def stats(self) -> dict[str, Any]:

@@ -128,6 +128,7 @@ def test_world_object_and_view_layer_panels(scene):
     assert draw(scene_parts.RGP_PT_view_layer_passes, view_layer=scene.view_layers[0]) == [
         "Indirect",
         "Error",
+        "Audit",
     ]
     assert draw(scene_parts.RGP_PT_view_layer_override, view_layer=scene.view_layers[0]) == [
         "Material Override"

@@ -114,6 +114,37 @@ pub trait Estimator: Sync {
     }
 }
 
+/// No structure at all: every gather hit is shaded and its path followed to the end, with next-event estimation and
+/// roulette. Unbiased, and the reference for all others.
+#[derive(Clone, Copy, Debug)]
+pub struct Path;
+
+impl Estimator for Path {
+    type Place = ();
+
+    /// Roulette ends a path long before.
+    const LEAST_DEPTH: u32 = 1000;
+
+    #[inline]
+    fn place(&self, _p: Vec3, _side: Side, _wo: Vec3, _footprint: Footprint) -> Option<()> {
+        None
+    }
+
+    fn read(&self, (): &()) -> Rgb {
+        Rgb::BLACK
+    }
+
+    fn radiance(
+        &self,
+        _surface: &Surface<'_>,
+        _lobes: LobeSet,
+        _footprint: Footprint,
+        _rng: &mut Rng,
+    ) -> Option<Rgb> {
+        None
+    }
+}
+
 /// What turns a reading into radiance: the albedo over π of the lobes whose light is read, taken as diffuse.
 #[must_use]
 pub fn reflectance<E: Estimator + ?Sized>(surface: &Surface<'_>, lobes: LobeSet) -> Rgb {

@@ -11,13 +11,12 @@ use std::time::Instant;
 use glam::{DVec3, Vec3};
 
 use crate::accel::Accel;
-use crate::baseline;
 use crate::bsdf::{MaterialTable, PreparedMaterial};
 use crate::effects_plan::{Effect, EffectsPlan};
 use crate::error::RenderError;
 use crate::estimator::{Estimator, PhotonSink};
 use crate::film::Film;
-use crate::gather::{self, Gatherer, PyramidLookup, Stop, TraceFloor};
+use crate::gather::{self, Auditor, Gatherer, PyramidLookup, Stop, TraceFloor};
 use crate::light::{Environment, Lights};
 use crate::lit_scene::LitScene;
 use crate::photon_pass::{self, PhotonPilot, PyramidDeposits};
@@ -69,7 +68,7 @@ pub fn trace_floor(
     let film = Film::new(width, height, &settings.film);
     threads(settings)?.install(|| {
         let lit = light(scene, settings, library, &progress)?;
-        Ok(gather::trace_floor(&Gatherer::new(&lit, &baseline::Path, settings), &film))
+        Ok(gather::trace_floor(&Gatherer::new(&lit, &crate::estimator::Path, settings), &film))
     })
 }
 
@@ -184,7 +183,15 @@ impl Work<'_> {
             EstimatorStats { name: "pyramid", bytes: stats.pyramid.bytes, seconds: stats.seconds.pyramid };
         let lookup = |set| PyramidLookup::new(pyramid.view(set), settings.gather.retrace_distance);
         let lookups: [_; SETS] = std::array::from_fn(lookup);
-        self.gather(lookups.each_ref(), stats)
+        let auditor = Auditor::new(lit, &pyramid, settings);
+        let gathered = self.gather(lookups.each_ref(), auditor.as_ref(), stats);
+        if let Some(auditor) = auditor {
+            let [width, height] = self.film.size();
+            let (audit, disagreement) = auditor.result(width * height, self.film.mean());
+            stats.audit = Some(audit);
+            self.film.set_audit(disagreement.picture(lit, settings.render.seed));
+        }
+        gathered
     }
 
     /// Where photons will be plenty, for cells that are finer there.
@@ -233,10 +240,16 @@ impl Work<'_> {
     }
 
     /// Makes the picture; even and odd passes ask one estimator each.
-    fn gather<E: Estimator>(&self, estimators: [&E; SETS], stats: &mut Stats) -> Result<(), RenderError> {
+    fn gather<E: Estimator>(
+        &self,
+        estimators: [&E; SETS],
+        auditor: Option<&Auditor<'_>>,
+        stats: &mut Stats,
+    ) -> Result<(), RenderError> {
         self.progress.enter(Stage::Gather);
         let clock = Instant::now();
-        let gatherers = estimators.map(|estimator| Gatherer::new(self.lit, estimator, self.settings));
+        let gatherers =
+            estimators.map(|estimator| Gatherer::new(self.lit, estimator, self.settings).audited(auditor));
         let stop = Stop::new(&self.settings.gather, self.progress.elapsed());
         let gathered = gather::run(&gatherers, self.film, stop, self.progress);
         stats.error = self.film.picture_error();

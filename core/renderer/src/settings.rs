@@ -85,6 +85,8 @@ pub struct GatherSettings {
     pub max_depth: u32,
     /// What answers for the light at the ends of gather rays.
     pub estimator: EstimatorKind,
+    /// One gather hit in so many is checked; 0 for none.
+    pub audit: u32,
     /// Photons that an estimate of the photon map, or of what is built on it, reaches to.
     pub photons_per_estimate: u32,
 }
@@ -212,6 +214,7 @@ impl Default for GatherSettings {
             retrace_distance: 1.732_050_8,
             max_depth: 32,
             estimator: EstimatorKind::Pyramid,
+            audit: 1000,
             photons_per_estimate: 50,
         }
     }
@@ -314,6 +317,7 @@ pub const KNOBS: &[Knob] = &[
     knob("gather", "retrace_distance", Kind::Float { minimum: 0.0, maximum: 8.0 }, "cells", "Gather rays shorter than this many cells are continued one bounce, which keeps corners right; 0 never"),
     knob("gather", "max_depth", int(1, 1000), "bounces", "Mirror, glass and short-ray bounces after which a path ends"),
     knob("gather", "estimator", Kind::Enum { choices: ESTIMATORS }, "", "Where gather rays read the light: the pyramid, or another method to measure it against"),
+    knob("gather", "audit", int(0, 1_000_000), "hits", "One gather hit in so many is also followed along a path to its end, which measures how far the pyramid is off; 0 for none; changes nothing in the picture"),
     knob("gather", "photons_per_estimate", int(2, 10_000), "photons", "Photons an estimate reaches to, where photons are read one by one; the pyramid does not use it"),
     knob("effects", "direct_light", SWITCH, "", "Light that comes straight from lights to surfaces the camera sees; Off leaves it out"),
     knob("effects", "indirect_diffuse", SWITCH, "", "Light that comes by way of diffuse surfaces; Off leaves it out, and its photons"),

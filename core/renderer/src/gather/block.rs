@@ -299,7 +299,13 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             let rays = self.packet.len() as u64;
             self.traces.rays.gather += rays;
             self.traces.meter.count(effect, rays);
+            let auditor = self.gatherer.auditor;
+            let audited = auditor.and_then(|auditor| auditor.lane(self.keys[0], index));
+            let before = audited.map(|lane| self.samples[lane].indirect);
             self.receive(&pdfs, index);
+            if let (Some(lane), Some(before)) = (audited, before) {
+                self.audit(lane, pdfs[lane], index, before);
+            }
         }
         self.traces.meter.back(owner);
     }
@@ -417,6 +423,23 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let (behind, light) = self.gatherer.cross_lamps(from, &ray, 0.0, sampled, &mut self.traces.meter);
         self.add_met(lane, gather_ray, light);
         behind
+    }
+
+    /// Has what the gather ray of a lane brought checked; `before` is the lane's indirect light without it.
+    #[inline(never)]
+    fn audit(&mut self, lane: usize, pdf: f32, index: u32, before: Rgb) {
+        let g = self.gatherer;
+        let Some(auditor) = g.auditor.filter(|_| self.packet.is_set(lane)) else { return };
+        let Some(hit) = self.packet.hit(lane) else { return };
+        let gather_ray = match self.others[lane] {
+            Some(ray) => ray,
+            None => GatherRay::diffuse(self.lambert.weight[lane], Some(pdf)),
+        };
+        let solid_angle = gather_ray.pdf.map_or(0.0, |pdf| g.solid_angle(pdf));
+        let read = self.samples[lane].indirect - before;
+        let key = hash(self.keys[lane], u64::from(index) << 16 | 6);
+        let audited = auditor.follow(self.packet.ray(lane), hit, &gather_ray, solid_angle, read, key);
+        self.traces.audited.push(audited);
     }
 
     /// As `receive`, for a ray that meets light or anything but a constant Lambert surface, or is too short to be read.

@@ -19,6 +19,7 @@
 mod accumulator;
 mod bins;
 mod build;
+mod cell_id;
 mod class;
 mod clip;
 mod grid;
@@ -35,6 +36,7 @@ use glam::{DVec3, IVec3, Vec3};
 
 pub use accumulator::{Accumulator, Landing, Leaving, SETS};
 pub use bins::{DirectionBins, Lanes};
+pub use cell_id::CellId;
 pub use class::NormalClasses;
 pub use grid::{Grid, PilotLandings, Reading};
 pub use layout::Layout;
