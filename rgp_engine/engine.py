@@ -33,6 +33,8 @@ class RGPRenderEngine(bpy.types.RenderEngine):
             self.register_pass(scene, renderlayer, "Indirect", 3, "RGB", "COLOR")
         if renderlayer.rgp.use_pass_error:
             self.register_pass(scene, renderlayer, "Error", 1, "X", "VALUE")
+        if renderlayer.rgp.use_pass_audit:
+            self.register_pass(scene, renderlayer, "Audit", 1, "X", "VALUE")
 
 
 register, unregister = bpy.utils.register_classes_factory((RGPRenderEngine,))

@@ -37,8 +37,20 @@ def rows(stats: Mapping[str, Any]) -> list[tuple[str, str]]:
         )
     if stats.get("error"):
         lines.append(("Error", f"{stats['error']['rms_clipped']:.3g} %"))
+    lines += _audit_rows(stats.get("audit"))
     if "memory_peak_bytes" in stats:
         lines.append(("Peak memory", _mebibytes(stats["memory_peak_bytes"])))
+    return lines
+
+
+def _audit_rows(audit: Mapping[str, Any] | None) -> list[tuple[str, str]]:
+    """What an audit says of the pyramid; nothing where there was none, or nothing to follow."""
+    if not audit or not audit["hits"]:
+        return []
+    lines = [("Pyramid bias", f"{audit['bias']:+.2g} % ± {audit['interval']:.2g} %")]
+    if audit["cells_disagreeing"]:
+        counts = f"{audit['cells_disagreeing']:,} of {audit['cells_tested']:,}"
+        lines.append(("Cells that disagree", counts))
     return lines
 
 

@@ -71,6 +71,13 @@ class SceneBuilder:
     def set_object_info(self, index: int, record: dict[str, Any]) -> None:
         """What materials may ask about an object: `{"color": [r, g, b, a], "index", "random"}`."""
 
+    def set_object_motion(self, index: int, steps: npt.NDArray[np.float64]) -> None:
+        """world_from_object at even times while the shutter is open, from when it opens until it is shut, the middle left
+        out: (N, 4, 4), N even."""
+
+    def set_mesh_motion(self, index: int, steps: list[npt.NDArray[np.float32] | None]) -> None:
+        """Positions at such times, (V, 3) each; None where they are those of the mesh."""
+
     def add_lamp(self, record: dict[str, Any]) -> int: ...
     def set_camera(self, record: dict[str, Any]) -> None: ...
     def set_world(self, record: dict[str, Any]) -> None: ...
@@ -108,7 +115,8 @@ class Session:
 
     def picture(self, layer: str) -> npt.NDArray[np.float32]:
         """Mean of the passes so far, rows from the bottom: "combined" (H, W, 4), "indirect" (H, W, 3); "error"
-        (H, W, 1) is the standard error of combined."""
+        (H, W, 1) is the standard error of combined; "audit" (H, W, 1) the part of the light that an audit found wrong,
+        from -1 (all is missing) to 1 (there should be none), 0 where nothing is known to be wrong."""
 
     def stats(self) -> dict[str, Any]:
         """The stats file's content, less what only the host knows (seconds.export, versions of Blender)."""

@@ -28,9 +28,8 @@ def draw_difference(
     mean = (picture - reference).mean(axis=2, dtype=np.float64)
     difference = np.nan_to_num(mean, posinf=0.0, neginf=0.0) / max(peak, 1e-30)
     scale = max(float(np.quantile(np.abs(difference), 0.995)), 1e-6)
-    # Both pictures get the same exposure: the brighter tenth of the reference is just not white.
-    exposure = 0.9 / max(float(np.quantile(np.nan_to_num(reference), 0.9)), 1e-30)
-    shown = (_display(picture * exposure), _display(reference * exposure), _false_color(difference / scale))
+    exposure = exposure_of(reference)
+    shown = (display(picture * exposure), display(reference * exposure), _false_color(difference / scale))
     strip = _beside([_titled(title, pixels) for title, pixels in zip(titles, shown, strict=True)])
     bar = _scale_bar(strip.shape[1], 100.0 * scale)
     try:
@@ -39,7 +38,12 @@ def draw_difference(
         raise CommandError(f"{path} cannot be written: {error.strerror}") from error
 
 
-def _display(picture: Picture) -> Pixels:
+def exposure_of(picture: Picture) -> float:
+    """Makes the brighter tenth of a picture just not white."""
+    return 0.9 / max(float(np.quantile(np.nan_to_num(picture), 0.9)), 1e-30)
+
+
+def display(picture: Picture) -> Pixels:
     """Linear to sRGB, eight bits."""
     linear = np.clip(np.nan_to_num(picture), 0.0, 1.0)
     encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)

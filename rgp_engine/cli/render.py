@@ -12,6 +12,7 @@ from ..files import whole_file
 from ..report import last_outcome
 from ..stats import effect_rows, rows
 from . import CommandError, blender_scene, exr
+from .audit_image import draw_audit
 from .exr import Picture
 from .scene_options import add_scene_options, apply_scene_options
 
@@ -40,6 +41,12 @@ def add_arguments(commands: Any) -> None:
     parser.add_argument("--indirect", metavar="OUT.exr", type=Path, help="write the indirect light alone")
     parser.add_argument("--stats", metavar="OUT.json", type=Path, help="write times, counts and settings")
     parser.add_argument("--png", metavar="OUT.png", type=Path, help="write the picture as Blender shows it")
+    parser.add_argument(
+        "--audit-image",
+        metavar="OUT.png",
+        type=Path,
+        help="draw the cells that the audit found wrong over the picture",
+    )
     add_scene_options(parser)
     parser.add_argument("--engine", choices=("RGP", "CYCLES"), default="RGP")
     parser.set_defaults(run=run)
@@ -47,21 +54,29 @@ def add_arguments(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Does what the command line asks for."""
-    outputs = [options.output, options.indirect, options.stats, options.png]
+    outputs = [options.output, options.indirect, options.stats, options.png, options.audit_image]
+    wants_audit = options.audit_image is not None
+    if wants_audit and options.engine != "RGP":
+        raise CommandError("only RGP has a pyramid to audit")
     for path in filter(None, outputs):
         _check_writable(path)
     blender_scene.register_engine()
     b_scene = blender_scene.open_scene(options.scene)
     blender_scene.choose_engine(b_scene, options.engine)
     apply_scene_options(b_scene, options, options.engine)
+    if wants_audit and b_scene.rgp.gather.audit == 0:
+        raise CommandError("--audit-image needs an audit, and gather.audit is 0")
     start = time.perf_counter()
-    channels = _render(b_scene, wants_indirect=options.indirect is not None)
+    channels = _render(b_scene, wants_indirect=options.indirect is not None, wants_audit=wants_audit)
     stats = _stats(options.engine, time.perf_counter() - start)
     exr.write(options.output, _layer(channels, "Combined", "RGBA"))
     if options.indirect:
         exr.write(options.indirect, _indirect(channels, options.engine))
     if options.png:
         blender_scene.save_png(b_scene, options.png)
+    if wants_audit:
+        audit = _layer(channels, "Audit", "X")[..., 0]
+        draw_audit(options.audit_image, _layer(channels, "Combined", "RGB"), audit)
     if options.stats:
         _write_stats(options.stats, stats)
     _print_table(stats)
@@ -75,11 +90,13 @@ def _write_stats(path: Path, stats: dict[str, Any]) -> None:
         raise CommandError(f"{path} cannot be written: {error.strerror}") from error
 
 
-def _render(b_scene: Any, *, wants_indirect: bool) -> dict[str, Picture]:
+def _render(b_scene: Any, *, wants_indirect: bool, wants_audit: bool) -> dict[str, Picture]:
     """Renders one view layer and returns every channel of the result."""
     b_layer = blender_scene.keep_one_layer(b_scene)
     if wants_indirect:
         blender_scene.add_indirect_passes(b_scene, b_layer)
+    if wants_audit:
+        b_layer.rgp.use_pass_audit = True
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "passes.exr"
         blender_scene.render_to(b_scene, path)

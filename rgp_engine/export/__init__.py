@@ -9,6 +9,7 @@ from ..report import ProblemLog
 from .camera import camera_record, render_region
 from .context import ExportContext
 from .instance import export_instances
+from .motion import Moving, at_middle, shutter
 from .scene import check_light, report_unsupported
 from .world import world_record
 
@@ -40,10 +41,23 @@ def export_scene(engine: Any, b_depsgraph: Any, log: ProblemLog) -> ExportedScen
     b_scene = b_depsgraph.scene_eval
     context = ExportContext(engine, b_depsgraph, native.core().SceneBuilder(), log)
     report_unsupported(b_scene, log)
-    camera = camera_record(context)
-    export_instances(context)
-    context.builder.set_world(world_record(context))
-    check_light(context)
-    b_render = b_scene.render
+    times = shutter(b_depsgraph)
+    if times is None:
+        camera = _export_parts(context, None)
+    else:
+        with at_middle(context, times):
+            moving = Moving()
+            camera = _export_parts(context, moving)
+            moving.export(context, camera, times)
+    b_render = b_depsgraph.scene_eval.render
     border = (b_render.border_min_x, b_render.border_min_y) if b_render.use_border else None
     return ExportedScene(context.builder, camera, border, time.perf_counter() - start)
+
+
+def _export_parts(context: ExportContext, moving: Moving | None) -> dict[str, Any]:
+    """Hands everything but the camera to the core, and gives the camera's record."""
+    camera = camera_record(context)
+    export_instances(context, moving)
+    context.builder.set_world(world_record(context))
+    check_light(context)
+    return camera

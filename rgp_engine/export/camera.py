@@ -12,27 +12,40 @@ from .coordinates import matrix_array
 def camera_record(context: ExportContext) -> dict[str, Any]:
     """The active camera as the core's CameraRecord, less `region`. Raises UserError without camera."""
     engine = context.engine
-    b_scene = context.b_depsgraph.scene_eval
-    b_object = engine.camera_override or b_scene.camera
+    b_object = _camera(context)
+    b_camera = b_object.data
+    _report_unsupported(b_object.name, b_camera, context)
+    matrix, window = camera_view(context)
+    return {
+        "name": b_object.name,
+        "projection": "orthographic" if b_camera.type == "ORTHO" else "perspective",
+        "world_from_camera": matrix,
+        "window": window,
+        "resolution": [engine.resolution_x, engine.resolution_y],
+        "clip": [b_camera.clip_start, b_camera.clip_end],
+        "lens": camera_lens(b_object) if b_camera.dof.use_dof else None,
+    }
+
+
+def _camera(context: ExportContext) -> Any:
+    """The active camera. Raises UserError without one."""
+    b_object = context.engine.camera_override or context.b_depsgraph.scene_eval.camera
     if b_object is None or b_object.type != "CAMERA":
         raise UserError(
             "There is no camera. Add one (Add > Camera) and make it the active camera of the scene"
         )
-    b_camera = b_object.data
-    _report_unsupported(b_object.name, b_camera, context)
+    return b_object
+
+
+def camera_view(context: ExportContext) -> tuple[list[list[float]], list[float]]:
+    """Where the active camera is, and its window: `world_from_camera` and `window` of the core's CameraRecord."""
+    engine, b_render = context.engine, context.b_depsgraph.scene_eval.render
+    b_object = _camera(context)
     resolution = (engine.resolution_x, engine.resolution_y)
-    aspect = (b_scene.render.pixel_aspect_x, b_scene.render.pixel_aspect_y)
-    shift = (engine.camera_shift_x(b_object), b_camera.shift_y)
-    is_orthographic = b_camera.type == "ORTHO"
-    return {
-        "name": b_object.name,
-        "projection": "orthographic" if is_orthographic else "perspective",
-        "world_from_camera": matrix_array(engine.camera_model_matrix(b_object)).tolist(),
-        "window": camera_window(b_camera, resolution, aspect, shift),
-        "resolution": list(resolution),
-        "clip": [b_camera.clip_start, b_camera.clip_end],
-        "lens": camera_lens(b_object) if b_camera.dof.use_dof else None,
-    }
+    aspect = (b_render.pixel_aspect_x, b_render.pixel_aspect_y)
+    shift = (engine.camera_shift_x(b_object), b_object.data.shift_y)
+    matrix = matrix_array(engine.camera_model_matrix(b_object)).tolist()
+    return matrix, camera_window(b_object.data, resolution, aspect, shift)
 
 
 def camera_lens(b_object: Any) -> dict[str, Any]:

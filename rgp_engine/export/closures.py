@@ -27,17 +27,20 @@ _PRINCIPLED = (
     ("Coat Tint", True),
     ("Emission Color", True),
     ("Emission Strength", False),
+    ("Sheen Weight", False),
+    ("Sheen Roughness", False),
+    ("Sheen Tint", True),
 )
 # Inputs that are left out, and do nothing at 0.
 _LEFT_OUT = (
-    "Subsurface Weight",
-    "Sheen Weight",
     "Anisotropic",
     "Anisotropy",
     "Diffuse Roughness",
     "Thin Film Thickness",
     "Thin Wall",
 )
+
+_SUBSURFACE = "subsurface scattering is approximated: light leaves where it enters, as from Diffuse"
 
 
 def closures(folder: Folder, entry: Input) -> tuple[list[WeightedClosure], list[dict[str, Any]]]:
@@ -96,9 +99,6 @@ def _closure(folder: Folder, source: Output) -> tuple[Closure | None, Color]:
     convert = _SHADERS.get(b_node.type)
     if convert is not None:
         return convert(folder, source), WHITE
-    if b_node.type == "HOLDOUT":
-        folder.report_node(b_node, "holdouts are not supported yet; black is used instead")
-        return None, BLACK
     entry = source.find("Color") or source.find("Base Color")
     if entry is None or source.b_socket.identifier == "Volume":
         folder.report_node(b_node, "this shader is not supported; black is used instead")
@@ -141,8 +141,25 @@ def _rough(kind: str, *more: str) -> Callable[[Folder, Output], Closure]:
     return convert
 
 
-def _transparent(folder: Folder, source: Output) -> Closure:
-    return {"kind": "transparent", "color": folder.color(source.input("Color"))}
+def _colored(kind: str) -> Callable[[Folder, Output], Closure]:
+    """A closure of a color alone."""
+    return lambda folder, source: {"kind": kind, "color": folder.color(source.input("Color"))}
+
+
+def _sheen(folder: Folder, source: Output) -> Closure:
+    if source.b_node.distribution != "MICROFIBER":
+        folder.report_node(source.b_node, "the distribution Ashikhmin is not supported; Microfiber is used")
+    roughness = folder.unit(folder.value(source.input("Roughness")))
+    return {"kind": "sheen", "color": folder.color(source.input("Color")), "roughness": roughness}
+
+
+def _holdout(_folder: Folder, _source: Output) -> Closure:
+    return {"kind": "holdout"}
+
+
+def _subsurface(folder: Folder, source: Output) -> Closure:
+    folder.report_node(source.b_node, _SUBSURFACE)
+    return {"kind": "diffuse", "color": folder.color(source.input("Color"))}
 
 
 def _emission(folder: Folder, source: Output) -> Closure:
@@ -151,6 +168,8 @@ def _emission(folder: Folder, source: Output) -> Closure:
 
 
 def _principled(folder: Folder, source: Output) -> Closure:
+    if folder.constant_value(source.input("Subsurface Weight")) != 0.0:
+        folder.report_node(source.b_node, _SUBSURFACE)
     record: Closure = {"kind": "principled"}
     for identifier, is_color in _PRINCIPLED:
         entry = source.input(identifier)
@@ -176,7 +195,11 @@ _SHADERS: dict[str, Callable[[Folder, Output], Closure]] = {
     "BSDF_GLOSSY": _rough("glossy"),
     "BSDF_GLASS": _rough("glass", "IOR"),
     "BSDF_REFRACTION": _rough("refraction", "IOR"),
-    "BSDF_TRANSPARENT": _transparent,
+    "BSDF_TRANSPARENT": _colored("transparent"),
+    "BSDF_TRANSLUCENT": _colored("translucent"),
+    "BSDF_SHEEN": _sheen,
+    "SUBSURFACE_SCATTERING": _subsurface,
+    "HOLDOUT": _holdout,
     "EMISSION": _emission,
     "BACKGROUND": _emission,
     "BSDF_PRINCIPLED": _principled,

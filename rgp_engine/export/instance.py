@@ -8,6 +8,7 @@ from .hashing import name_hash
 from .light import export_light
 from .material import material_index
 from .mesh import mesh_arrays
+from .motion import Moving
 from .visibility import instance_bits, owner
 
 # Without triangles of their own. What curves, texts, surfaces and metaballs look like comes as an instance of a mesh.
@@ -15,8 +16,9 @@ _WITHOUT_TRIANGLES = ("CURVE", "SURFACE", "FONT", "META")
 _INVISIBLE = ("EMPTY", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE")
 
 
-def export_instances(context: ExportContext) -> None:
-    """Everything the depsgraph shows: objects, and instances of collections, faces, particles and geometry nodes."""
+def export_instances(context: ExportContext, moving: Moving | None) -> None:
+    """Everything the depsgraph shows: objects, and instances of collections, faces, particles and geometry nodes.
+    What may move is noted."""
     for b_instance in context.b_depsgraph.object_instances:
         b_object = b_instance.object
         context.tick(b_object.name)
@@ -26,13 +28,13 @@ def export_instances(context: ExportContext) -> None:
         if kind == "LIGHT":
             export_light(context, b_instance)
         elif kind == "MESH":
-            _export_mesh(context, b_instance)
+            _export_mesh(context, b_instance, moving)
         elif kind not in _INVISIBLE + _WITHOUT_TRIANGLES:
             name = b_object.bl_rna.properties["type"].enum_items[kind].name
             context.log.add(b_object.name, f"objects of type {name} are not supported yet; left out")
 
 
-def _export_mesh(context: ExportContext, b_instance: Any) -> None:
+def _export_mesh(context: ExportContext, b_instance: Any, moving: Moving | None) -> None:
     """One placed mesh."""
     visibility = instance_bits(context, b_instance)
     if visibility == 0:
@@ -52,6 +54,8 @@ def _export_mesh(context: ExportContext, b_instance: Any) -> None:
     index = context.builder.add_object(b_object.name, mesh, matrix, materials, visibility)
     if context.asking_objects.intersection(materials):
         context.builder.set_object_info(index, _object_info(b_instance))
+    if moving is not None:
+        moving.note(b_instance, index, mesh)
 
 
 def _object_info(b_instance: Any) -> dict[str, Any]:

@@ -9,8 +9,6 @@ from .context import ExportContext
 def report_unsupported(b_scene: Any, log: ProblemLog) -> None:
     """Says which settings of Blender this release does not follow."""
     b_render = b_scene.render
-    if b_render.use_motion_blur:
-        log.add(b_scene.name, "motion blur is not supported yet; everything stands still")
     if b_render.use_multiview:
         log.add(b_scene.name, "stereo is not supported yet; every view shows the same picture")
 

@@ -19,6 +19,8 @@ _PATTERNS = (
     "TEX_WHITE_NOISE",
     "TEX_GABOR",
 )
+# Images whose average is not looked for.
+_SEVERAL = ("SEQUENCE", "TILED", "MOVIE")
 _MIXES = {"TEX_CHECKER": (0.5, 0.5, 0.0), "TEX_BRICK": (0.45, 0.45, 0.1)}
 _MIX_INPUTS = ("Color1", "Color2", "Mortar")
 # Seen from outside, head on, by a camera: the case that most pictures show.
@@ -49,6 +51,8 @@ def _image(b_node: Any, b_output: Any) -> tuple[Value, str]:
     b_image = b_node.image
     if b_image is None:
         return _channel(MISSING, 1.0, b_output), "it has no image"
+    if b_image.source in _SEVERAL:
+        return _shaped(0.5, b_output), "only a typical value is used here"
     mean = average(b_image, is_sphere=b_node.type == "TEX_ENVIRONMENT")
     if mean is None:
         return _channel(MISSING, 1.0, b_output), f'the image "{b_image.name}" cannot be read'

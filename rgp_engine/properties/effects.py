@@ -49,3 +49,8 @@ class RGPEffectSettings(bpy.types.PropertyGroup):
         "Depth of Field",
         "Blur of what is not in focus, where the camera's depth of field is on; Off makes everything sharp",
     )
+    motion_blur: _switch(
+        "Motion Blur",
+        "Blur of what moves while the shutter is open, where the scene's motion blur is on; "
+        "Off makes everything stand still",
+    )

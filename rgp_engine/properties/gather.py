@@ -79,6 +79,15 @@ class RGPGatherSettings(bpy.types.PropertyGroup):
         min=1,
         max=1000,
     )
+    audit: bpy.props.IntProperty(
+        name="Audit One In",
+        description="One gather hit in so many is also followed along a path to its end, which measures how far the "
+        "pyramid is off; 0 for none; changes nothing in the picture",
+        default=1000,
+        min=0,
+        max=1_000_000,
+        soft_max=10_000,
+    )
     # For measurements, by `--set`: no panel shows these two.
     estimator: bpy.props.EnumProperty(
         name="Estimator",

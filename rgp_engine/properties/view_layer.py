@@ -28,3 +28,10 @@ class RGPViewLayerSettings(bpy.types.PropertyGroup):
         default=False,
         update=_update_passes,
     )
+    use_pass_audit: bpy.props.BoolProperty(
+        name="Audit",
+        description="Deliver the cells that an audit found wrong as a pass of its own: from -1, all their light is "
+        "missing, to 1, there should be none. Asks for Gather > Audit",
+        default=False,
+        update=_update_passes,
+    )

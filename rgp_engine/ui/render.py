@@ -6,6 +6,16 @@ from bpy.types import Panel
 
 from .base import ClosedEnginePanel, EnginePanel, draw_settings
 
+_CURVES = {
+    "SMOOTH": "SMOOTHCURVE",
+    "ROUND": "SPHERECURVE",
+    "ROOT": "ROOTCURVE",
+    "SHARP": "SHARPCURVE",
+    "LINE": "LINCURVE",
+    "MAX": "NOCURVE",
+}
+"""Blender's presets of the shutter curve, and their icons."""
+
 
 class RGP_PT_photons(EnginePanel, Panel):
     """Photon pass."""
@@ -45,7 +55,7 @@ class RGP_PT_gather(EnginePanel, Panel):
         """Draws the panel."""
         b_gather = context.scene.rgp.gather
         draw_settings(self.layout, b_gather, "rays", "camera_samples", "light_samples")
-        draw_settings(self.layout, b_gather, "sampling", "retrace_distance", "max_depth")
+        draw_settings(self.layout, b_gather, "sampling", "retrace_distance", "max_depth", "audit")
 
 
 class RGP_PT_stop(EnginePanel, Panel):
@@ -72,6 +82,40 @@ class RGP_PT_film(ClosedEnginePanel, Panel):
         self.layout.prop(context.scene.render, "film_transparent", text="Transparent")
 
 
+class RGP_PT_motion_blur(ClosedEnginePanel, Panel):
+    """Blender's own settings of the shutter."""
+
+    bl_label = "Motion Blur"
+    bl_context = "render"
+
+    def draw_header(self, context: Any) -> None:
+        """Draws the switch."""
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        b_render = context.scene.render
+        self.layout.active = b_render.use_motion_blur
+        draw_settings(self.layout, b_render, "motion_blur_position", "motion_blur_shutter")
+
+
+class RGP_PT_shutter_curve(ClosedEnginePanel, Panel):
+    """How the shutter opens and closes."""
+
+    bl_label = "Shutter Curve"
+    bl_context = "render"
+    bl_parent_id = "RGP_PT_motion_blur"
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        b_render = context.scene.render
+        self.layout.active = b_render.use_motion_blur
+        self.layout.template_curve_mapping(b_render, "motion_blur_shutter_curve")
+        row = self.layout.row(align=True)
+        for shape, icon in _CURVES.items():
+            row.operator("render.shutter_curve_preset", icon=icon, text="").shape = shape
+
+
 class RGP_PT_performance(ClosedEnginePanel, Panel):
     """Performance."""
 
@@ -89,6 +133,8 @@ CLASSES = (
     RGP_PT_pyramid,
     RGP_PT_gather,
     RGP_PT_stop,
+    RGP_PT_motion_blur,
+    RGP_PT_shutter_curve,
     RGP_PT_film,
     RGP_PT_performance,
 )

@@ -60,7 +60,8 @@ class RGP_PT_view_layer_passes(EnginePanel, Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        draw_settings(self.layout, context.view_layer.rgp, "use_pass_indirect", "use_pass_error")
+        names = ("use_pass_indirect", "use_pass_error", "use_pass_audit")
+        draw_settings(self.layout, context.view_layer.rgp, *names)
 
 
 class RGP_PT_view_layer_override(ClosedEnginePanel, Panel):

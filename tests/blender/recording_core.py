@@ -50,6 +50,12 @@ class SceneBuilder:
     def set_object_info(self, index: int, record: dict[str, Any]) -> None:
         self.objects[index]["info"] = record
 
+    def set_object_motion(self, index: int, steps: Any) -> None:
+        self.objects[index]["steps"] = steps
+
+    def set_mesh_motion(self, index: int, steps: list[Any]) -> None:
+        self.meshes[index]["steps"] = steps
+
     def add_lamp(self, record: dict[str, Any]) -> int:
         self.lamps.append(record)
         return len(self.lamps) - 1
@@ -117,7 +123,12 @@ class Session:
 
     def picture(self, layer: str) -> Any:
         _, _, width, height = self._region
-        channels, value = {"combined": (4, 0.25), "indirect": (3, 0.125), "error": (1, 0.01)}[layer]
+        channels, value = {
+            "combined": (4, 0.25),
+            "indirect": (3, 0.125),
+            "error": (1, 0.01),
+            "audit": (1, 0.5),
+        }[layer]
         return np.full((height, width, channels), value, np.float32)
 
     def stats(self) -> dict[str, Any]:

@@ -78,6 +78,29 @@ def test_picture_indirect_png_and_stats(blend, tmp_path):
         assert word in result.stdout
 
 
+def test_audit(tmp_path):
+    """One bounce of light instead of all is found, and drawn in the blue of what is missing."""
+    image, stats = tmp_path / "audit.png", tmp_path / "out.json"
+    settings = (
+        "photon_pass.max_depth=1",
+        "photon_pass.photon_count=50000",
+        "gather.rays=64",
+        "gather.audit=16",
+    )
+    sets = [word for setting in settings for word in ("--set", setting)]
+    files = ["-o", tmp_path / "out.exr", "--audit-image", image, "--stats", stats]
+    result = run("render", ROOT / "scenes/cornell_box.blend", *files, *sets, "--resolution", "64x64")
+    assert result.returncode == 0, result.stderr
+    assert "Pyramid bias" in result.stdout
+    audit = json.loads(stats.read_text())["audit"]
+    assert audit["bias"] < -audit["interval"] < 0.0
+    assert audit["cells_disagreeing"] >= len(audit["cells"]) > 0
+    b_image = bpy.data.images.load(str(image))
+    red, _, blue, _ = np.array(b_image.pixels).reshape(-1, 4).T
+    assert (blue - red).max() > 0.2
+    assert (red - blue).max() < 0.05
+
+
 def test_frame(blend, tmp_path):
     assert run("render", blend, "-o", tmp_path / "a.exr", *QUICK, "--frame", 2).returncode == 0
     assert (pixels(tmp_path / "a.exr")[..., :3] == 0.0).all()
@@ -109,7 +132,10 @@ def test_cycles_runs_the_same_way(blend, tmp_path):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--set", "gather.rayz=3"], "there is no setting gather.rayz; there are gather.camera_samples, "),
+        (
+            ["--set", "gather.rayz=3"],
+            "there is no setting gather.rayz; there are gather.audit, gather.camera_samples, ",
+        ),
         (
             ["--set", "gatherer.rays=3"],
             "there is no group of settings gatherer; there are photon_pass, pyramid, ",

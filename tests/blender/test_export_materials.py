@@ -90,6 +90,9 @@ def test_principled(scene, closures):
         Coat_Tint=(0.4, 0.5, 0.6),
         Emission_Color=(0.1, 0.2, 0.3),
         Emission_Strength=2.0,
+        Sheen_Weight=0.3,
+        Sheen_Roughness=0.7,
+        Sheen_Tint=(0.6, 0.5, 0.4),
     )
     assert only(closures(b_material)) == approx(
         {
@@ -108,6 +111,9 @@ def test_principled(scene, closures):
             "coat_tint": [0.4, 0.5, 0.6],
             "emission_color": [0.1, 0.2, 0.3],
             "emission_strength": 2.0,
+            "sheen_weight": 0.3,
+            "sheen_roughness": 0.7,
+            "sheen_tint": [0.6, 0.5, 0.4],
         }
     )
 
@@ -414,21 +420,49 @@ def test_unknown_node_is_replaced_by_the_sockets_own_value_and_reported_once(sce
     assert problems().count(expected) == 1
 
 
-@pytest.mark.parametrize(
-    "kind", ["BsdfTranslucent", "BsdfSheen", "BsdfToon", "SubsurfaceScattering", "BsdfHair"]
-)
+@pytest.mark.parametrize("kind", ["BsdfToon", "BsdfHair"])
 def test_other_shaders_become_diffuse(scene, closures, problems, kind):
     b_material = build.surface(f"ShaderNode{kind}", Color=(0.2, 0.4, 0.6))
     assert only(closures(b_material)) == approx({"kind": "diffuse", "color": [0.2, 0.4, 0.6]})
     assert any("this shader is not supported yet; Diffuse is used instead" in text for text in problems())
 
 
-def test_holdout_is_black_and_reported(scene, closures, problems):
-    assert closures(build.surface("ShaderNodeHoldout")) == []
-    assert any("holdouts are not supported yet" in text for text in problems())
+@pytest.mark.parametrize(
+    ("kind", "inputs", "expected"),
+    [
+        ("BsdfTranslucent", {"Color": (0.2, 0.4, 0.6)}, {"kind": "translucent", "color": [0.2, 0.4, 0.6]}),
+        (
+            "BsdfSheen",
+            {"Color": (0.2, 0.4, 0.6), "Roughness": 0.3},
+            {"kind": "sheen", "color": [0.2, 0.4, 0.6], "roughness": 0.3},
+        ),
+        ("Holdout", {}, {"kind": "holdout"}),
+    ],
+)
+def test_translucent_sheen_and_holdout(scene, closures, problems, kind, inputs, expected):
+    assert only(closures(build.surface(f"ShaderNode{kind}", **inputs))) == approx(expected)
+    assert not [text for text in problems() if text.startswith("Material")]
 
 
-@pytest.mark.parametrize("name", ["Subsurface Weight", "Sheen Weight", "Anisotropic"])
+def test_subsurface_scattering_is_diffuse_and_reported_once(scene, closures, problems):
+    message = "subsurface scattering is approximated: light leaves where it enters, as from Diffuse"
+    b_node = build.surface("ShaderNodeSubsurfaceScattering", Color=(0.2, 0.4, 0.6))
+    assert only(closures(b_node)) == approx({"kind": "diffuse", "color": [0.2, 0.4, 0.6]})
+    assert [text for text in problems() if message in text] == [
+        f'Material: node "Subsurface Scattering": {message}'
+    ]
+
+
+@pytest.mark.parametrize("weight", [0.0, 0.5])
+def test_principled_subsurface_keeps_its_albedo(scene, closures, problems, weight):
+    b_material = build.surface("ShaderNodeBsdfPrincipled", Subsurface_Weight=weight)
+    record = only(closures(b_material))
+    assert record["kind"] == "principled"
+    assert "subsurface_weight" not in record
+    assert any("subsurface scattering is approximated" in text for text in problems()) == (weight > 0.0)
+
+
+@pytest.mark.parametrize("name", ["Anisotropic"])
 def test_principled_inputs_that_are_left_out(scene, closures, problems, name):
     closures(build.surface("ShaderNodeBsdfPrincipled", **{name.replace(" ", "_"): 0.5}))
     assert f'Material: node "Principled BSDF": {name} is not supported yet; left out' in problems()

@@ -39,6 +39,9 @@ class Layout:
     def menu(self, name, **_):
         assert hasattr(bpy.types, name)
 
+    def template_curve_mapping(self, b_data, name):
+        assert name in b_data.bl_rna.properties
+
     def template_list(self, name, *_, **__):
         assert hasattr(bpy.types, name)
 
@@ -125,6 +128,7 @@ def test_world_object_and_view_layer_panels(scene):
     assert draw(scene_parts.RGP_PT_view_layer_passes, view_layer=scene.view_layers[0]) == [
         "Indirect",
         "Error",
+        "Audit",
     ]
     assert draw(scene_parts.RGP_PT_view_layer_override, view_layer=scene.view_layers[0]) == [
         "Material Override"
@@ -175,7 +179,7 @@ def test_every_effect_has_a_switch_and_the_last_render_says_why(scene, monkeypat
     monkeypatch.setattr(report, "_last", None)
     switches = draw(effects.RGP_PT_effects, scene=scene)
     assert switches[:4] == ["Direct Light", "Indirect Diffuse", "Indirect Glossy", "Caustics"]
-    assert len(switches) == 9
+    assert len(switches) == 10
     glass = "glass on 'Bottle'"
     chosen = planned("mirrors_and_glass", glass, switch="off", computed=False)
     report.publish(Outcome(stats={"seconds": {}, "effects": [planned("caustics", glass), chosen]}))

@@ -188,16 +188,19 @@ class Scene:
         orthographic: bool = False,
         region: tuple[int, int, int, int] | None = None,
         up: Any = (0.0, 0.0, 1.0),
+        tall: float | None = None,
     ) -> None:
-        """A camera whose window reaches `half` to either side: at distance 1, or in metres when orthographic."""
+        """A camera whose window reaches `half` to either side, and `tall` up and down where pixels are no squares: at
+        distance 1, or in metres when orthographic."""
         distance = float(np.linalg.norm(np.asarray(target, float) - np.asarray(eye, float)))
         width, height = pixels
+        tall = half * height / width if tall is None else tall
         self.builder.set_camera(
             {
                 "name": "Camera",
                 "projection": "orthographic" if orthographic else "perspective",
                 "world_from_camera": looking(eye, target, up).tolist(),
-                "window": [-half, half, -half * height / width, half * height / width],
+                "window": [-half, half, -tall, tall],
                 "resolution": [width, height],
                 "region": list(region or (0, 0, width, height)),
                 "clip": [distance * 1e-6, distance * 1e6],

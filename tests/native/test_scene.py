@@ -53,6 +53,24 @@ def test_arrays_that_do_not_fit_are_refused(room, positions, triangles, more):
         room.builder.add_mesh("Mesh", positions, triangles, **more)
 
 
+def test_steps_of_what_moves(room):
+    mesh = room.builder.add_mesh("Quad", room.positions, room.triangles)
+    index = room.builder.add_object("Quad", mesh, np.eye(4), [], 31)
+    room.builder.set_object_motion(index, np.stack([np.eye(4)] * 2))
+    room.builder.set_mesh_motion(mesh, [None, room.positions + np.float32(1.0)])
+    for wrong in (np.stack([np.eye(4)] * 3), np.zeros((2, 3, 4)), np.eye(4)):
+        with pytest.raises(rgp_core.SceneError):
+            room.builder.set_object_motion(index, wrong)
+    for wrong in (
+        [room.positions],
+        [room.positions, room.positions[:3]],
+        [None, room.positions[:, :2].copy()],
+    ):
+        with pytest.raises(rgp_core.SceneError):
+            room.builder.set_mesh_motion(mesh, wrong)
+    assert room.finish().problems == []
+
+
 def test_indices_that_do_not_exist_are_refused(room):
     with pytest.raises(rgp_core.SceneError, match="mesh"):
         room.builder.add_object("Object", 7, np.eye(4), [], 31)

@@ -150,6 +150,10 @@ MATERIALS: dict[str, Surface] = {
     "refraction_rough": shader("BsdfRefraction", "GGX", Color=TINT, Roughness=0.4, IOR=1.45),
     "transparent": shader("BsdfTransparent", Color=(0.8, 0.5, 0.3)),
     "transparent_mix": joined("MixShader", _diffuse, shader("BsdfTransparent"), 0.4),
+    "translucent": shader("BsdfTranslucent", Color=GOLD),
+    "translucent_mix": joined("MixShader", _diffuse, shader("BsdfTranslucent", Color=GOLD), 0.5),
+    "holdout_mix": joined("MixShader", _diffuse, shader("Holdout"), 0.4),
+    "sheen": shader("BsdfSheen", Color=GOLD, Roughness=0.7),
     "emission": shader("Emission", Color=GOLD, Strength=1.5),
     "principled_plastic": shader("BsdfPrincipled", Base_Color=BLUE, Roughness=0.4),
     "principled_matte": shader("BsdfPrincipled", Base_Color=BLUE, Roughness=0.9, Specular_IOR_Level=0.2),
@@ -163,6 +167,14 @@ MATERIALS: dict[str, Surface] = {
     ),
     "principled_rough_transmission": shader(
         "BsdfPrincipled", Base_Color=TINT, Roughness=0.4, IOR=1.45, Transmission_Weight=1.0
+    ),
+    "principled_sheen": shader(
+        "BsdfPrincipled",
+        Base_Color=BLUE,
+        Roughness=0.6,
+        Sheen_Weight=0.6,
+        Sheen_Roughness=0.5,
+        Sheen_Tint=GOLD,
     ),
     "principled_alpha": shader("BsdfPrincipled", Base_Color=BLUE, Roughness=0.5, Alpha=0.5),
     "principled_emission": shader(

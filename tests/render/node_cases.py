@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import bpy
@@ -37,11 +38,11 @@ class NodeCase:
     """Of the plane."""
 
 
-def noise_image(color_space: str = "Non-Color", alpha: bool = False) -> Any:
+def noise_image(color_space: str = "Non-Color", alpha: bool = False, seed: int = 1) -> Any:
     """8 x 8 texels of random bytes."""
     b_image = bpy.data.images.new("Noise", 8, 8, alpha=alpha)
     b_image.colorspace_settings.name = color_space
-    texels = np.random.default_rng(1).random((64, 4), np.float32)
+    texels = np.random.default_rng(seed).random((64, 4), np.float32)
     if not alpha:
         texels[:, 3] = 1.0
     b_image.pixels.foreach_set(texels.ravel())
@@ -118,6 +119,48 @@ def _image(extension: str, interpolation: str) -> Make:
         b_tree.links.new(b_tree.nodes.new("ShaderNodeUVMap").outputs[0], b_mapping.inputs[0])
         b_tree.links.new(b_mapping.outputs[0], b_image.inputs[0])
         return b_image.outputs["Color"]
+
+    return make
+
+
+def _saved(name: str, seed: int) -> str:
+    """The path of a picture that is written to Blender's own folder for what is there for a moment."""
+    b_image = noise_image("sRGB", seed=seed)
+    b_image.filepath_raw, b_image.file_format = str(Path(bpy.app.tempdir) / name), "PNG"
+    b_image.save()
+    path = str(b_image.filepath_raw)
+    bpy.data.images.remove(b_image)
+    return path
+
+
+def _sequence(**settings: Any) -> Make:
+    """Six pictures, one for each frame; the scene is at frame 1."""
+
+    def make(b_tree: Any) -> Any:
+        first, *_ = [_saved(f"rgp_sequence_{number:03d}.png", number) for number in range(1, 7)]
+        b_texture = b_tree.nodes.new("ShaderNodeTexImage")
+        b_texture.image = bpy.data.images.load(first)
+        b_texture.image.source = "SEQUENCE"
+        for name, value in settings.items():
+            setattr(b_texture.image_user, name, value)
+        return b_texture.outputs["Color"]
+
+    return make
+
+
+def _tiled(numbers: tuple[int, ...]) -> Make:
+    """A picture for each tile; the plane lies on 1001 and 1002."""
+
+    def make(b_tree: Any) -> Any:
+        for number in numbers:
+            _saved(f"rgp_tiles_{len(numbers)}.{number}.png", number)
+        folder = Path(bpy.app.tempdir)
+        b_texture = b_tree.nodes.new("ShaderNodeTexImage")
+        b_texture.image = bpy.data.images.load(str(folder / f"rgp_tiles_{len(numbers)}.{numbers[0]}.png"))
+        b_texture.image.source = "TILED"
+        b_texture.image.filepath = str(folder / f"rgp_tiles_{len(numbers)}.<UDIM>.png")
+        b_texture.image.reload()
+        return b_texture.outputs["Color"]
 
     return make
 
@@ -273,6 +316,20 @@ def _textures() -> Iterator[tuple[str, NodeCase]]:
     for uses_alpha in (True, False):
         name = "with alpha" if uses_alpha else "without its alpha"
         yield f"Image Texture/{name}", NodeCase(_image_with_alpha(uses_alpha))
+    sequences = {
+        "sequence": {"frame_duration": 6, "frame_offset": 2},
+        "sequence, its end": {"frame_duration": 4, "frame_start": -20},
+        "sequence, cyclic": {
+            "frame_duration": 4,
+            "frame_start": -5,
+            "use_cyclic": True,
+            "use_auto_refresh": True,
+        },
+    }
+    for name, settings in sequences.items():
+        yield f"Image Texture/{name}", NodeCase(_sequence(**settings))
+    yield "Image Texture/UDIM tiles", NodeCase(_tiled((1001, 1002)), EDGES)
+    yield "Image Texture/UDIM with a tile missing", NodeCase(_tiled((1001,)), EDGES)
     kinds = ("LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "RADIAL", "QUADRATIC_SPHERE", "SPHERICAL")
     for kind in kinds:
         yield f"Gradient Texture/{kind}", NodeCase(output_of("TexGradient", gradient_type=kind))

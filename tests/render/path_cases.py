@@ -96,6 +96,14 @@ def _below_a_pane(surface: Surface) -> Callable[[], None]:
     return add
 
 
+def _before_a_screen() -> None:
+    """A diffuse ball before a screen of paper that is lit from behind."""
+    add_polygons("Screen", [_wall(y=1.2)], shader("BsdfTranslucent", Color=(0.9, 0.6, 0.3)))
+    cases.add_ball(shader("BsdfDiffuse", Color=BLUE))
+    where = ((0.3, 3.2, 2.6), (0.0, 1.2, 1.4))
+    cases.add_lamp(cases.Lamp("AREA", 120.0, {"shape": "SQUARE", "size": 2.0}, where))
+
+
 def _behind_a_pane() -> None:
     """A diffuse ball behind a pane of glass, 5 cm thick: two faces that refract."""
     low, high = (-1.2, -1.6, 0.02), (1.2, -1.55, 2.5)
@@ -130,6 +138,7 @@ PATHS: dict[str, Callable[[], None]] = {
     "tinted_shadow": _below_a_pane(shader("BsdfTransparent", Color=(0.9, 0.3, 0.1))),
     "alpha_shadow": _below_a_pane(shader("BsdfPrincipled", Base_Color=RED, Alpha=0.4)),
     "perforated_shadow": _below_a_pane(perforated()),
+    "translucent_screen": _before_a_screen,
     "thin_glass": _behind_a_pane,
     "total_inner_reflection": _block_of_glass,
     "checkered_emitter": _below_an_emitter(textured("TexChecker", 4.0)),

@@ -136,6 +136,7 @@ def _expose(scene: bpy.types.Scene) -> None:
         ("material/diffuse/world", _hide("diffuse")),
         ("material/mirror/lamp", _hide("camera")),
         ("material/diffuse/world", _holdout),
+        ("material/holdout_mix/world", _transparent_film),
         ("material/diffuse/world", _transparent_film),
         ("material/transparent_mix/world", _transparent_film),
         ("material/transparent_mix/world", _transparent_holdout),

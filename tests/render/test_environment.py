@@ -10,6 +10,7 @@ import pytest
 
 from tests.blender import build
 from tests.render import pictures
+from tests.render.world_cases import panorama, skies, sky, split_by_camera
 
 pytestmark = pytest.mark.slow
 
@@ -40,61 +41,6 @@ def scene_with(b_world: Any, *, sky_alone: bool) -> bpy.types.Scene:
     return scene
 
 
-def world() -> tuple[Any, Any, Any]:
-    """A world, its nodes and its Background."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    b_world = bpy.data.worlds.new("World")
-    b_tree = build.shader_tree(b_world)
-    b_background = build.node(b_tree, "ShaderNodeBackground", Strength=1.0)
-    build.connect(b_tree, b_background, b_tree.nodes.new("ShaderNodeOutputWorld"), "Surface")
-    return b_world, b_tree, b_background
-
-
-def panorama(projection: str = "EQUIRECTANGULAR", turn: float = 0.0) -> Any:
-    """A world that shows a picture with a bright spot, turned about the vertical."""
-    b_world, b_tree, b_background = world()
-    b_image = bpy.data.images.new("Panorama", 64, 32, float_buffer=True)
-    v, u = (np.mgrid[0:32, 0:64] + 0.5) / np.array([32, 64])[:, None, None]
-    texels = np.ones((32, 64, 4), np.float32)
-    texels[..., :3] = np.stack([0.3 + v, 0.5 + 0.3 * np.cos(2.0 * np.pi * u), 0.2 + v * v], axis=-1)
-    texels[24, 20, :3] = 200.0
-    b_image.pixels.foreach_set(texels.ravel())
-    b_image.pack()
-    b_texture = b_tree.nodes.new("ShaderNodeTexEnvironment")
-    b_texture.image, b_texture.projection = b_image, projection
-    b_mapping = build.node(b_tree, "ShaderNodeMapping", Rotation=(0.0, 0.0, turn))
-    build.connect(b_tree, b_tree.nodes.new("ShaderNodeTexCoord"), b_mapping, "Vector", "Generated")
-    build.connect(b_tree, b_mapping, b_texture, "Vector")
-    build.connect(b_tree, b_texture, b_background, "Color")
-    return b_world
-
-
-def sky(kind: str, *, sun: bool) -> Any:
-    """A world with a Sky Texture."""
-    b_world, b_tree, b_background = world()
-    b_background.inputs["Strength"].default_value = 0.1
-    b_sky = b_tree.nodes.new("ShaderNodeTexSky")
-    b_sky.sky_type, b_sky.sun_disc = kind, sun
-    b_sky.sun_elevation, b_sky.sun_rotation, b_sky.sun_direction = 0.5, 2.7, (0.6, 0.3, 0.5)
-    build.connect(b_tree, b_sky, b_background, "Color")
-    return b_world
-
-
-def split_by_camera() -> Any:
-    """What the camera sees of it is red."""
-    b_world = panorama()
-    b_tree = b_world.node_tree
-    b_output = next(b_node for b_node in b_tree.nodes if b_node.type == "OUTPUT_WORLD")
-    b_lit = next(b_node for b_node in b_tree.nodes if b_node.type == "BACKGROUND")
-    b_mix = b_tree.nodes.new("ShaderNodeMixShader")
-    build.connect(b_tree, b_tree.nodes.new("ShaderNodeLightPath"), b_mix, "Fac", "Is Camera Ray")
-    build.connect(b_tree, b_lit, b_mix, "Shader")
-    b_red = build.node(b_tree, "ShaderNodeBackground", Color=(1.0, 0.0, 0.0), Strength=1.0)
-    build.connect(b_tree, b_red, b_mix, "Shader_001")
-    build.connect(b_tree, b_mix, b_output, "Surface")
-    return b_world
-
-
 def both(scene: bpy.types.Scene) -> tuple[Any, Any]:
     """Our picture and that of Cycles."""
     pictures.use_rgp(scene, {**SETTINGS, **SAMPLES})
@@ -106,12 +52,6 @@ def both(scene: bpy.types.Scene) -> tuple[Any, Any]:
     b_cycles.max_bounces = b_cycles.diffuse_bounces = 32
     b_cycles.sample_clamp_indirect = 0.0
     return ours, pictures.render(scene)["Combined"]
-
-
-def skies() -> list[str]:
-    """Models of the Blender in use that are rendered as they are."""
-    kinds = bpy.types.ShaderNodeTexSky.bl_rna.properties["sky_type"].enum_items.keys()
-    return [kind for kind in kinds if kind != "HOSEK_WILKIE"]
 
 
 @pytest.mark.parametrize(

@@ -72,6 +72,14 @@ def test_table():
     assert rows({"seconds": {"total": 2.0}}) == [("Total time", "2.00 s")]
 
 
+def test_audit():
+    audit = {"hits": 900, "bias": -0.123, "interval": 0.0812, "cells_tested": 1200, "cells_disagreeing": 0}
+    assert rows({"seconds": {}, "audit": audit}) == [("Pyramid bias", "-0.12 % ± 0.081 %")]
+    found = rows({"seconds": {}, "audit": audit | {"cells_disagreeing": 3}})
+    assert found[1] == ("Cells that disagree", "3 of 1,200")
+    assert rows({"seconds": {}, "audit": None}) == rows({"seconds": {}, "audit": audit | {"hits": 0}}) == []
+
+
 def test_effects():
     assert effect_rows(CORE) == [
         ("Direct light", "on, lamp 'Lamp': 2.50 s, 3.0 MiB"),

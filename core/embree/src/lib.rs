@@ -22,4 +22,4 @@ pub use device::Device;
 pub use error::EmbreeError;
 pub use library::Library;
 pub use query::{Hit, Hit16, INVALID_ID, Ray, Ray16, RayHit16};
-pub use scene::{BuildQuality, CommittedScene, SceneBuilder};
+pub use scene::{BuildQuality, CommittedScene, MOST_STEPS, SceneBuilder};

@@ -26,6 +26,8 @@ pub struct Ray {
     pub t_far: f32,
     /// Geometry is seen if its own mask shares a bit with this.
     pub mask: u32,
+    /// When, from 0 to 1; what does not move is the same at all times.
+    pub time: f32,
 }
 
 /// Where a ray first meets a triangle.
@@ -67,7 +69,7 @@ pub struct Ray16 {
     pub dir_y: [f32; 16],
     /// Directions, z.
     pub dir_z: [f32; 16],
-    /// Times from 0 to 1; nothing here moves, so leave 0.
+    /// Times, as in [`Ray::time`].
     pub time: [f32; 16],
     /// Ends of the parts that count. A hit shortens it to the hit's distance; an occluded lane gets -∞.
     pub t_far: [f32; 16],
@@ -225,7 +227,7 @@ fn single_ray(ray: &Ray) -> SingleRay {
         origin: ray.origin,
         t_near: ray.t_near,
         direction: ray.direction,
-        time: 0.0,
+        time: ray.time,
         t_far: ray.t_far,
         mask: ray.mask,
         id: 0,

@@ -15,6 +15,9 @@ use crate::sys::{self, Bounds, GeometryObject, SceneObject};
 /// dense.
 const LARGEST_ID: u32 = (1 << 26) - 1;
 
+/// Most time steps a geometry may have.
+pub const MOST_STEPS: usize = 129;
+
 /// How much time a build spends on making rays fast.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BuildQuality {
@@ -72,6 +75,26 @@ impl SceneBuilder {
         triangles: &[[u32; 3]],
         mask: u32,
     ) -> Result<(), EmbreeError> {
+        self.add_moving_triangles(id, &[positions], triangles, mask)
+    }
+
+    /// As [`add_triangles`](Self::add_triangles), with positions that change: `steps` holds those at even times from 0 to 1,
+    /// between which they go straight.
+    ///
+    /// # Errors
+    /// The same; steps that are none, too many ([`MOST_STEPS`]) or of unequal length.
+    pub fn add_moving_triangles(
+        &mut self,
+        id: u32,
+        steps: &[&[[f32; 3]]],
+        triangles: &[[u32; 3]],
+        mask: u32,
+    ) -> Result<(), EmbreeError> {
+        let step_count = step_count(id, steps.len())?;
+        let positions = steps[0];
+        if steps.iter().any(|step| step.len() != positions.len()) {
+            return Err(EmbreeError::InvalidInput(format!("the steps of mesh {id} differ in length")));
+        }
         if let Some(index) = triangles.as_flattened().iter().find(|&&index| index as usize >= positions.len())
         {
             let count = positions.len();
@@ -84,8 +107,11 @@ impl SceneBuilder {
             return Ok(());
         }
         let geometry = RawGeometry::new(&self.scene.device, sys::GEOMETRY_TYPE_TRIANGLE)?;
-        geometry.copy_buffer(sys::BUFFER_TYPE_VERTEX, sys::FORMAT_FLOAT3, positions)?;
-        geometry.copy_buffer(sys::BUFFER_TYPE_INDEX, sys::FORMAT_UINT3, triangles)?;
+        geometry.set_steps(step_count)?;
+        for (slot, positions) in (0..).zip(steps) {
+            geometry.copy_buffer(sys::BUFFER_TYPE_VERTEX, slot, sys::FORMAT_FLOAT3, positions)?;
+        }
+        geometry.copy_buffer(sys::BUFFER_TYPE_INDEX, 0, sys::FORMAT_UINT3, triangles)?;
         self.attach(id, &geometry, mask)
     }
 
@@ -105,7 +131,23 @@ impl SceneBuilder {
         transform_columns: &[f32; 12],
         mask: u32,
     ) -> Result<(), EmbreeError> {
-        if !transform_columns.iter().all(|value| value.is_finite()) {
+        self.add_moving_instance(id, scene, &[*transform_columns], mask)
+    }
+
+    /// As [`add_instance`](Self::add_instance), with a transform that changes: `steps` holds it at even times from 0 to 1,
+    /// between which its elements change evenly.
+    ///
+    /// # Errors
+    /// The same; steps that are none or too many ([`MOST_STEPS`]).
+    pub fn add_moving_instance(
+        &mut self,
+        id: u32,
+        scene: &CommittedScene,
+        steps: &[[f32; 12]],
+        mask: u32,
+    ) -> Result<(), EmbreeError> {
+        let step_count = step_count(id, steps.len())?;
+        if !steps.as_flattened().iter().all(|value| value.is_finite()) {
             return Err(EmbreeError::InvalidInput(format!("the transform of instance {id} is not finite")));
         }
         if !Arc::ptr_eq(&scene.shared.scene.device, &self.scene.device) {
@@ -118,17 +160,15 @@ impl SceneBuilder {
         }
         self.reserve_id(id)?;
         let geometry = RawGeometry::new(&self.scene.device, sys::GEOMETRY_TYPE_INSTANCE)?;
-        let api = &self.scene.device.api;
-        // SAFETY: both handles are alive and of one device; the matrix has the twelve floats the format says
-        // and is copied. Embree takes a reference of its own to the instanced scene.
-        unsafe {
-            (api.set_instanced_scene)(geometry.handle.as_ptr(), scene.handle());
-            (api.set_geometry_transform)(
-                geometry.handle.as_ptr(),
-                0,
-                sys::FORMAT_FLOAT3X4_COLUMN_MAJOR,
-                transform_columns.as_ptr().cast(),
-            );
+        geometry.set_steps(step_count)?;
+        let (api, handle) = (&self.scene.device.api, geometry.handle.as_ptr());
+        // SAFETY: both handles are alive and of one device. Embree takes a reference of its own to the instanced scene.
+        unsafe { (api.set_instanced_scene)(handle, scene.handle()) };
+        for (step, columns) in (0..).zip(steps) {
+            let format = sys::FORMAT_FLOAT3X4_COLUMN_MAJOR;
+            // SAFETY: the geometry is alive and has this step; the matrix has the twelve floats the format says and is
+            // copied.
+            unsafe { (api.set_geometry_transform)(handle, step, format, columns.as_ptr().cast()) };
         }
         device::check()?;
         self.has_instances = true;
@@ -253,16 +293,31 @@ impl<'a> RawGeometry<'a> {
         Ok(Self { handle: handle.ok_or(EmbreeError::OutOfMemory)?, device })
     }
 
+    /// Sets the number of time steps; one is what geometries have from the start.
+    fn set_steps(&self, count: u32) -> Result<(), EmbreeError> {
+        if count > 1 {
+            // SAFETY: the geometry is alive and not committed yet.
+            unsafe { (self.device.api.set_time_step_count)(self.handle.as_ptr(), count) };
+        }
+        device::check()
+    }
+
     /// Copies `items` into a buffer that Embree owns, and pads as it needs: it reads 16 bytes at the last
     /// position.
-    fn copy_buffer<T: Copy>(&self, kind: c_int, format: c_int, items: &[[T; 3]]) -> Result<(), EmbreeError> {
+    fn copy_buffer<T: Copy>(
+        &self,
+        kind: c_int,
+        slot: u32,
+        format: c_int,
+        items: &[[T; 3]],
+    ) -> Result<(), EmbreeError> {
         let stride = size_of::<[T; 3]>();
         // SAFETY: the geometry is alive, and stride and format agree.
         let target = unsafe {
             (self.device.api.set_new_geometry_buffer)(
                 self.handle.as_ptr(),
                 kind,
-                0,
+                slot,
                 format,
                 stride,
                 items.len(),
@@ -282,6 +337,12 @@ impl Drop for RawGeometry<'_> {
         // SAFETY: this is the only owner of the reference, and it is given up once.
         unsafe { (self.device.api.release_geometry)(self.handle.as_ptr()) };
     }
+}
+
+/// Checks a number of time steps.
+fn step_count(id: u32, count: usize) -> Result<u32, EmbreeError> {
+    let allowed = u32::try_from(count).ok().filter(|_| (1..=MOST_STEPS).contains(&count));
+    allowed.ok_or_else(|| EmbreeError::InvalidInput(format!("{id} has {count} time steps")))
 }
 
 /// What the build's progress callback works with.

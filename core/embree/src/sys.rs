@@ -157,6 +157,7 @@ entry_points! {
     release_geometry = "rtcReleaseGeometry": fn(*mut GeometryObject);
     commit_geometry = "rtcCommitGeometry": fn(*mut GeometryObject);
     set_geometry_mask = "rtcSetGeometryMask": fn(*mut GeometryObject, u32);
+    set_time_step_count = "rtcSetGeometryTimeStepCount": fn(*mut GeometryObject, u32);
     // Buffer type, slot, format, stride in bytes, number of items.
     set_new_geometry_buffer = "rtcSetNewGeometryBuffer":
         fn(*mut GeometryObject, c_int, u32, c_int, usize, usize) -> *mut c_void;

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Random, commit, device, mesh_scene, ray};
-use rgp_embree::{BuildQuality, EmbreeError, Ray, SceneBuilder};
+use rgp_embree::{BuildQuality, EmbreeError, MOST_STEPS, Ray, SceneBuilder};
 
 const TRIANGLE: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.5]];
 const FACE: [[u32; 3]; 1] = [[0, 1, 2]];
@@ -136,4 +136,44 @@ fn instances_that_are_flat_or_empty_do_no_harm() {
         scene.intersect(&ray(random.vector(), random.vector()));
     }
     assert_eq!(scene.intersect(&ray([10.25, 0.25, 9.0], [0.0, 0.0, -1.0])).map(|hit| hit.object), Some(3));
+}
+
+/// Halfway between two steps everything is halfway, and the bounds hold it at all times.
+#[test]
+fn what_moves_is_where_it_is_at_the_time_of_the_ray() {
+    let device = device();
+    let mesh = mesh_scene(&device, 0, &TRIANGLE, &FACE);
+    let shifted = |x: f32| {
+        let mut columns = IDENTITY;
+        columns[9] = x;
+        columns
+    };
+    let lifted = |x: f32| TRIANGLE.map(|[px, y, z]| [px + x, y + 10.0, z]);
+    let mut builder = SceneBuilder::new(&device, BuildQuality::High).unwrap();
+    builder.add_moving_instance(0, &mesh, &[shifted(0.0), shifted(4.0), shifted(0.0)], u32::MAX).unwrap();
+    builder.add_moving_triangles(1, &[&lifted(0.0), &lifted(8.0)], &FACE, u32::MAX).unwrap();
+    let scene = commit(builder);
+    for (time, [x, lifted_x]) in
+        [(0.0, [0.0, 0.0]), (0.25, [2.0, 2.0]), (0.75, [2.0, 6.0]), (1.0, [0.0, 8.0])]
+    {
+        for (id, place, y) in [(0, x, 0.25), (1, lifted_x, 10.25)] {
+            let down = |x: f32| Ray { time, ..ray([x, y, 9.0], [0.0, 0.0, -1.0]) };
+            assert_eq!(scene.intersect(&down(place + 0.25)).map(|hit| hit.object), Some(id), "{time}");
+            assert!(scene.occluded(&down(place + 0.25)) && !scene.occluded(&down(place + 1.25)));
+        }
+    }
+    let [low, high] = scene.bounds();
+    assert!(low[0] <= 0.0 && high[0] >= 9.0 && high[1] >= 11.0, "{low:?} {high:?}");
+}
+
+#[test]
+fn steps_that_do_not_fit_are_refused() {
+    let device = device();
+    let mesh = mesh_scene(&device, 0, &TRIANGLE, &FACE);
+    let mut builder = SceneBuilder::new(&device, BuildQuality::Medium).unwrap();
+    let refused = |outcome: Result<(), EmbreeError>| matches!(outcome, Err(EmbreeError::InvalidInput(_)));
+    assert!(refused(builder.add_moving_instance(0, &mesh, &[], 1)));
+    assert!(refused(builder.add_moving_instance(0, &mesh, &vec![IDENTITY; MOST_STEPS + 1], 1)));
+    assert!(refused(builder.add_moving_triangles(0, &[&TRIANGLE, &TRIANGLE[..2]], &FACE, 1)));
+    assert!(builder.add_moving_instance(0, &mesh, &vec![IDENTITY; MOST_STEPS], 1).is_ok());
 }

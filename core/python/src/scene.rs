@@ -65,6 +65,7 @@ impl SceneBuilder {
     ) -> PyResult<usize> {
         let arrays = MeshArrays {
             positions: rows(&name, "positions", &positions, &[3])?,
+            steps: Vec::new(),
             triangles: rows(&name, "triangles", &triangles, &[3])?,
             corner_normals: match corner_normals {
                 Some(array) => corners(rows::<f32, 9>(&name, "corner_normals", &array, &[3, 3])?),
@@ -95,6 +96,24 @@ impl SceneBuilder {
             .try_into()
             .map_err(|_| SceneError::new_err(format!("'{name}': world_from_object is not 4 x 4")))?;
         self.0.add_object(name, mesh, record::matrix(&matrix), materials, visibility).map_err(to_python)
+    }
+
+    fn set_object_motion(&mut self, index: usize, steps: PyReadonlyArrayDyn<'_, f64>) -> PyResult<()> {
+        let matrices: Vec<[f64; 16]> = rows("in motion", "steps", &steps, &[4, 4])?;
+        let matrix =
+            |m: &[f64; 16]| record::matrix(&std::array::from_fn(|i| std::array::from_fn(|j| m[4 * i + j])));
+        let matrices: Vec<_> = matrices.iter().map(matrix).collect();
+        self.0.set_object_motion(index, &matrices).map_err(to_python)
+    }
+
+    fn set_mesh_motion(
+        &mut self,
+        index: usize,
+        steps: Vec<Option<PyReadonlyArrayDyn<'_, f32>>>,
+    ) -> PyResult<()> {
+        let rows = |step: &PyReadonlyArrayDyn<'_, f32>| rows("in motion", "a step", step, &[3]);
+        let steps = steps.iter().map(|step| step.as_ref().map(rows).transpose()).collect::<PyResult<_>>()?;
+        self.0.set_mesh_motion(index, steps).map_err(to_python)
     }
 
     fn set_object_info(&mut self, index: usize, record: &Bound<'_, PyDict>) -> PyResult<()> {

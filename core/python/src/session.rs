@@ -120,8 +120,10 @@ impl Session {
             "combined" => (py.detach(|| film.combined()), 4),
             "indirect" => (py.detach(|| film.indirect()), 3),
             "error" => (py.detach(|| film.error()), 1),
+            "audit" => (py.detach(|| film.audit()), 1),
             other => {
-                let message = format!("there is no layer '{other}'; there are combined, indirect and error");
+                let message =
+                    format!("there is no layer '{other}'; there are combined, indirect, error and audit");
                 return Err(PyValueError::new_err(message));
             }
         };

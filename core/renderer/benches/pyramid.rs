@@ -6,7 +6,9 @@ use criterion::{BatchSize, Criterion, Throughput};
 use glam::{DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::math::Side;
-use rgp_renderer::pyramid::{Accumulator, Grid, Layout, NormalClasses, Pyramid, SurfaceTriangle};
+use rgp_renderer::pyramid::{
+    Accumulator, Grid, Layout, NormalClasses, Pyramid, SidePoint, SurfaceTriangle, Surroundings,
+};
 
 const RESOLUTION: u32 = 128;
 const PHOTONS: usize = 1_000_000;
@@ -55,20 +57,7 @@ impl Room {
     fn layout(&self) -> Layout {
         let bounds = [DVec3::splat(-HALF), DVec3::splat(HALF)];
         let grid = Grid::new(bounds, bounds, RESOLUTION, DVec3::ZERO);
-        let triangle = |i: usize| {
-            let [a, b, c] = self.triangles[i];
-            let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
-            SurfaceTriangle { corners: [a, b, c], normal, glossy: false }
-        };
-        Layout::new(
-            grid,
-            NormalClasses::Six,
-            self.triangles.len(),
-            triangle,
-            |points| vec![true; points.len()],
-            || true,
-        )
-        .expect("nobody cancels")
+        Layout::new(grid, NormalClasses::Six, self).expect("nobody cancels")
     }
 
     /// Points on the walls and the floor, half of them on each, in no order.
@@ -92,6 +81,30 @@ impl Room {
     }
 }
 
+impl Surroundings for Room {
+    fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    fn triangle(&self, i: usize) -> SurfaceTriangle {
+        let [a, b, c] = self.triangles[i];
+        let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+        SurfaceTriangle { corners: [a, b, c], normal, glossy: false }
+    }
+
+    fn open(&self, points: &[SidePoint]) -> Vec<bool> {
+        vec![true; points.len()]
+    }
+
+    fn sees(&self, _: Vec3, _: Vec3) -> bool {
+        true
+    }
+
+    fn keep_going(&self) -> bool {
+        true
+    }
+}
+
 fn deposit(accumulator: &Accumulator<'_>, landings: &[Landing]) {
     let flux = Rgb::splat(1.0 / PHOTONS as f32);
     for landing in landings {
@@ -105,8 +118,8 @@ fn filled<'a>(layout: &'a Layout, landings: &[Landing]) -> Accumulator<'a> {
     accumulator
 }
 
-fn merged(accumulator: Accumulator<'_>, layout: &Layout) -> Pyramid {
-    Pyramid::build(accumulator, layout, 16, |_, _| true, || true).expect("nobody cancels")
+fn merged(accumulator: Accumulator<'_>, layout: &Layout, room: &Room) -> Pyramid {
+    Pyramid::build(accumulator, layout, 16, room).expect("nobody cancels")
 }
 
 fn pyramid_build(criterion: &mut Criterion, room: &Room, layout: &Layout, landings: &[Landing]) {
@@ -115,7 +128,7 @@ fn pyramid_build(criterion: &mut Criterion, room: &Room, layout: &Layout, landin
     group.bench_function("layout", |bencher| bencher.iter(|| room.layout()));
     group.bench_function("merge", |bencher| {
         let full = || filled(layout, landings);
-        bencher.iter_batched(full, |accumulator| merged(accumulator, layout), BatchSize::PerIteration);
+        bencher.iter_batched(full, |accumulator| merged(accumulator, layout, room), BatchSize::PerIteration);
     });
     group.finish();
 }
@@ -154,6 +167,6 @@ fn main() {
     let (layout, landings) = (room.layout(), room.landings(PHOTONS));
     pyramid_build(&mut criterion, &room, &layout, &landings);
     photon_deposit(&mut criterion, &layout, &landings);
-    pyramid_lookup(&mut criterion, &merged(filled(&layout, &landings), &layout), &landings);
+    pyramid_lookup(&mut criterion, &merged(filled(&layout, &landings), &layout, &room), &landings);
     criterion.final_summary();
 }

@@ -72,6 +72,9 @@ pub trait Estimator: Sync {
     /// What is read is radiance that leaves towards `wo`, the surface's albedo included, and not irradiance.
     const READS_RADIANCE: bool = false;
 
+    /// Light on the far side of a surface can be read too, for what scatters it through; else such surfaces are followed.
+    const READS_BOTH_SIDES: bool = false;
+
     /// Answers are put off until many hits have come together, see [`Estimator::answer`].
     const DEFERS: bool = false;
 
@@ -108,6 +111,37 @@ pub trait Estimator: Sync {
     ) -> Option<Rgb> {
         let place = self.place(surface.p, surface.bsdf.frame.side(), surface.bsdf.wo(), footprint)?;
         Some(reflectance::<Self>(surface, lobes) * self.read(&place))
+    }
+}
+
+/// No structure at all: every gather hit is shaded and its path followed to the end, with next-event estimation and
+/// roulette. Unbiased, and the reference for all others.
+#[derive(Clone, Copy, Debug)]
+pub struct Path;
+
+impl Estimator for Path {
+    type Place = ();
+
+    /// Roulette ends a path long before.
+    const LEAST_DEPTH: u32 = 1000;
+
+    #[inline]
+    fn place(&self, _p: Vec3, _side: Side, _wo: Vec3, _footprint: Footprint) -> Option<()> {
+        None
+    }
+
+    fn read(&self, (): &()) -> Rgb {
+        Rgb::BLACK
+    }
+
+    fn radiance(
+        &self,
+        _surface: &Surface<'_>,
+        _lobes: LobeSet,
+        _footprint: Footprint,
+        _rng: &mut Rng,
+    ) -> Option<Rgb> {
+        None
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod emitters;
 mod hit_point;
+mod motion;
 
 use glam::{DVec3, Vec3};
 
@@ -36,6 +37,8 @@ pub struct Surface<'a> {
     pub bsdf: Bsdf<'a>,
     /// Which triangle.
     pub hit: Hit,
+    /// When, while the shutter is open.
+    pub time: f32,
 }
 
 impl Surface<'_> {
@@ -44,6 +47,12 @@ impl Surface<'_> {
     pub fn receiver(&self) -> Receiver {
         Receiver { p: self.p, normal: self.bsdf.lit_side() }
     }
+
+    /// A ray that leaves it at once.
+    #[must_use]
+    pub fn leaving(&self, direction: Vec3, mask: u32) -> Ray {
+        Ray::leaving(self.p, self.ng, direction, mask, self.time)
+    }
 }
 
 impl<'a> LitScene<'a> {
@@ -51,6 +60,13 @@ impl<'a> LitScene<'a> {
     /// is seen as its mean.
     #[must_use]
     pub fn surface(&'a self, ray: &Ray, hit: Hit, width: f32) -> Surface<'a> {
+        if self.moves(hit.object) {
+            return self.moving_surface(ray, hit, width);
+        }
+        self.still_surface(ray, hit, width)
+    }
+
+    fn still_surface(&'a self, ray: &Ray, hit: Hit, width: f32) -> Surface<'a> {
         let ng = self.accel.geometric_normal(hit.object, hit.primitive);
         let ns = self.accel.shading_normal(&hit);
         let material = &self.materials[self.accel.material(hit.object, hit.primitive)];
@@ -61,7 +77,7 @@ impl<'a> LitScene<'a> {
                 self.varying_bsdf(material, varying, &point)
             }
         };
-        Surface { p: ray.origin + ray.direction * hit.t, ng, bsdf, hit }
+        Surface { p: ray.origin + ray.direction * hit.t, ng, bsdf, hit, time: ray.time }
     }
 
     #[inline(never)]
@@ -93,14 +109,14 @@ impl<'a> LitScene<'a> {
         ShadingFrame::new(-ray.direction, ng, self.accel.shading_normal(hit))
     }
 
-    /// A ray that starts where it enters the bounds of all there is to meet: far-off origins cost no precision. Also gives how far the
+    /// A ray at a time that starts where it enters the bounds of all there is to meet: far-off origins cost no precision. Also gives how far the
     /// origin was moved.
     #[must_use]
-    pub fn entering(&self, origin: DVec3, direction: Vec3, mask: u32) -> (Ray, f32) {
+    pub fn entering(&self, origin: DVec3, direction: Vec3, mask: u32, time: f32) -> (Ray, f32) {
         let [low, high] = self.accel.bounds().map(Vec3::as_dvec3);
         let margin = DVec3::splat(1e-3);
         if (origin.cmpgt(low - margin) & origin.cmplt(high + margin)).all() {
-            return (Ray { origin: origin.as_vec3(), direction, mask }, 0.0);
+            return (Ray { origin: origin.as_vec3(), direction, mask, time }, 0.0);
         }
         let d = direction.as_dvec3();
         let per_d = d.recip();
@@ -109,14 +125,17 @@ impl<'a> LitScene<'a> {
         let moved = if entry.is_finite() && entry > 0.0 { entry } else { 0.0 };
         #[expect(clippy::cast_possible_truncation, reason = "rays are traced in f32")]
         let moved_f32 = moved as f32;
-        (Ray { origin: (origin + d * moved).as_vec3(), direction, mask }, moved_f32)
+        (Ray { origin: (origin + d * moved).as_vec3(), direction, mask, time }, moved_f32)
     }
 }
 
-/// The kind of a ray that was sampled from a BSDF, as a bit of [`visibility`].
+/// The kind of a ray that was sampled from a BSDF, as bits of [`visibility`]: as in Cycles, one that was scattered through a
+/// surface is both diffuse and a transmission.
 #[must_use]
 pub fn ray_kind(sample: &BsdfSample) -> u32 {
-    if sample.is_transmission {
+    if sample.class == LobeSet::TRANSLUCENT {
+        visibility::DIFFUSE | visibility::TRANSMISSION
+    } else if sample.is_transmission {
         visibility::TRANSMISSION
     } else if sample.class == LobeSet::DIFFUSE {
         visibility::DIFFUSE
@@ -130,7 +149,7 @@ pub fn ray_kind(sample: &BsdfSample) -> u32 {
 pub fn lobes_lit(visible_to: u32) -> LobeSet {
     let mut set = LobeSet::EMPTY;
     if visible_to & visibility::DIFFUSE != 0 {
-        set = set | LobeSet::DIFFUSE;
+        set = set | LobeSet::DIFFUSE | LobeSet::TRANSLUCENT;
     }
     if visible_to & visibility::GLOSSY != 0 {
         set = set | LobeSet::ROUGH;

@@ -4,7 +4,7 @@ mod aim;
 mod baselines;
 mod caustics;
 mod memory;
-mod openness;
+mod surroundings;
 
 use std::path::Path;
 use std::time::Instant;
@@ -12,20 +12,18 @@ use std::time::Instant;
 use glam::{DVec3, Vec3};
 
 use crate::accel::Accel;
-use crate::baseline;
-use crate::bsdf::{LobeSet, MaterialTable, PreparedMaterial};
+use crate::bsdf::{MaterialTable, PreparedMaterial};
 use crate::effects_plan::{Effect, EffectsPlan};
 use crate::error::RenderError;
 use crate::estimator::{Estimator, PhotonSink};
 use crate::film::Film;
-use crate::gather::{self, Gatherer, PyramidLookup, Stop, TraceFloor};
+use crate::gather::{self, Auditor, Gatherer, PyramidLookup, Stop, TraceFloor};
 use crate::light::{Environment, Lights};
 use crate::lit_scene::LitScene;
-use crate::photon_pass::{self, Carry, PhotonPass, PyramidDeposits};
+use crate::photon_pass::{self, Carry, PhotonPass, PhotonPilot, PyramidDeposits};
 use crate::progress::{Progress, Stage};
 use crate::pyramid::{
-    Accumulator, DirectionBins, Grid, Layout, NormalClasses, Pyramid, Reading, SETS, SidePoint,
-    SurfaceTriangle,
+    Accumulator, DirectionBins, Grid, Layout, NormalClasses, PilotLandings, Pyramid, Reading, SETS,
 };
 use crate::scene::Scene;
 use crate::settings::{EstimatorKind, RenderSettings, Switch, parse_bins};
@@ -34,6 +32,7 @@ use crate::stats::{EstimatorStats, Stats, TextureCounts};
 
 use memory::Budget;
 pub use memory::check_memory;
+use surroundings::SceneSurroundings;
 
 /// Renders `scene` into `film`, with Embree from the file `library`. `stats` grows as passes end, so that it is worth
 /// reading after a cancel too.
@@ -70,7 +69,7 @@ pub fn trace_floor(
     let film = Film::new(width, height, &settings.film);
     threads(settings)?.install(|| {
         let lit = light(scene, settings, library, &progress)?;
-        Ok(gather::trace_floor(&Gatherer::new(&lit, &baseline::Path, None, settings), &film))
+        Ok(gather::trace_floor(&Gatherer::new(&lit, &crate::estimator::Path, None, settings), &film))
     })
 }
 
@@ -99,6 +98,9 @@ fn passes(
     if lit.plan.direct {
         stats.effects[Effect::DirectLight as usize].bytes = lit.lights.bytes();
     }
+    if lit.plan.motion_blur {
+        stats.effects[Effect::MotionBlur as usize].bytes = scene.motion_bytes();
+    }
     stats.effects[Effect::EnvironmentLight as usize].bytes = lit.lights.world_bytes();
     stats.effects[Effect::EmissiveMeshes as usize].bytes = lit.lights.emitter_bytes();
 
@@ -117,6 +119,9 @@ fn passes(
         EstimatorKind::Path => work.path(stats),
     }
 }
+
+/// The pilot traces one photon in so many.
+const PILOT_SHARE: u64 = 64;
 
 /// The passes over a scene that is ready to be traced.
 struct Work<'a> {
@@ -137,7 +142,13 @@ impl Work<'_> {
         let [elevation, azimuth] = parse_bins(&settings.pyramid.bins)?;
         let bins = lit.plan.direction_bins().then_some(DirectionBins { elevation, azimuth });
         let wanted = settings.pyramid.finest_resolution;
-        let measure = |resolution| layout(lit, self.seen, settings, resolution, progress);
+        let landings = self.pilot_landings()?;
+        let surroundings = SceneSurroundings::new(lit, progress);
+        let classes = NormalClasses::of_setting(&settings.pyramid.normal_classes);
+        let measure = |resolution| {
+            let grid = grid(lit, self.seen, &landings, settings, resolution);
+            Layout::new(grid, classes, &surroundings).ok_or(RenderError::Cancelled)
+        };
         let budget = Budget::new(lit.accel.scene(), settings)?.less(self.caustic_bytes());
         let (layout, resolution) = budget.fit(wanted, bins, measure)?;
         if resolution < wanted {
@@ -159,11 +170,7 @@ impl Work<'_> {
         let clock = Instant::now();
         stats.pyramid.build_bytes = layout.bytes() + accumulator.bytes();
         let build_bin_bytes = accumulator.bin_bytes();
-        let visible = |p, q| lit.accel.sees(p, q);
-        let pyramid =
-            Pyramid::build(accumulator, &layout, settings.pyramid.photons_per_cell, visible, || {
-                !progress.is_cancelled()
-            })
+        let pyramid = Pyramid::build(accumulator, &layout, settings.pyramid.photons_per_cell, &surroundings)
             .ok_or(RenderError::Cancelled)?;
         drop(layout);
         stats.pyramid.levels = pyramid.level_count();
@@ -177,7 +184,28 @@ impl Work<'_> {
             EstimatorStats { name: "pyramid", bytes: stats.pyramid.bytes, seconds: stats.seconds.pyramid };
         let lookup = |set| PyramidLookup::new(pyramid.view(set), settings.gather.retrace_distance);
         let lookups: [_; SETS] = std::array::from_fn(lookup);
-        self.gather(lookups.each_ref(), stats)
+        self.gather(lookups.each_ref(), Some(&pyramid), stats)
+    }
+
+    /// Where photons will be plenty, for cells that are finer there.
+    fn pilot_landings(&self) -> Result<PilotLandings, RenderError> {
+        let Work { lit, settings, progress, .. } = *self;
+        let count = settings.photon_pass.photon_count / PILOT_SHARE;
+        if settings.pyramid.adaptive_levels == 0 || count == 0 {
+            return Ok(PilotLandings::default());
+        }
+        let landings = PhotonPilot::default();
+        let pass = PhotonPass {
+            carry: Carry::All,
+            count,
+            max_depth: settings.photon_pass.max_depth,
+            seed: settings.render.seed,
+            sets: 1,
+        };
+        photon_pass::run(lit, pass, &landings, progress)?;
+        let each = settings.photon_pass.photon_count as f64 / count as f64;
+        let enough = f64::from(Pyramid::photons_to_divide(settings.pyramid.photons_per_cell));
+        Ok(PilotLandings { places: landings.places(), each, enough })
     }
 
     /// Charges the pyramid to the effects that are read from it: bins to the glossy, all else to indirect light in general.
@@ -212,19 +240,32 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Makes the picture; even and odd passes ask one estimator each.
-    fn gather<E: Estimator>(&self, estimators: [&E; SETS], stats: &mut Stats) -> Result<(), RenderError> {
-        let maps = self.caustics(SETS.min(self.settings.gather.camera_samples as usize), stats)?;
+    /// Makes the picture; even and odd passes ask one estimator each. What is read from `audited` is checked.
+    fn gather<E: Estimator>(
+        &self,
+        estimators: [&E; SETS],
+        audited: Option<&Pyramid>,
+        stats: &mut Stats,
+    ) -> Result<(), RenderError> {
+        let Work { lit, settings, .. } = *self;
+        let maps = self.caustics(SETS.min(settings.gather.camera_samples as usize), stats)?;
         self.progress.enter(Stage::Gather);
         let clock = Instant::now();
+        let auditor = audited.and_then(|pyramid| Auditor::new(lit, pyramid, maps.first(), settings));
         let gatherers = std::array::from_fn(|half| {
             let caustics = maps.get(half).or(maps.first());
-            Gatherer::new(self.lit, estimators[half], caustics, self.settings)
+            Gatherer::new(lit, estimators[half], caustics, settings).audited(auditor.as_ref())
         });
         let stop = Stop::new(&self.settings.gather, self.progress.elapsed());
         let gathered = gather::run(&gatherers, self.film, stop, self.progress);
         stats.error = self.film.picture_error();
         stats.seconds.gather = clock.elapsed().as_secs_f64();
+        if let Some(auditor) = &auditor {
+            let [width, height] = self.film.size();
+            let (audit, disagreement) = auditor.result(width * height, self.film.mean());
+            stats.audit = Some(audit);
+            self.film.set_audit(disagreement.picture(lit, settings.render.seed));
+        }
         let gathered = gathered?;
         gathered.costs.charge(&mut stats.effects, stats.seconds.gather);
         stats.rays += gathered.rays;
@@ -260,47 +301,25 @@ fn light<'a>(
         lights.map_caustics(casters);
     }
     let proxies = lights.lamp_proxies();
-    let accel = Accel::build(scene, &proxies, library, settings.render.threads as usize, progress)?;
+    let threads = settings.render.threads as usize;
+    let accel = Accel::build(scene, &proxies, plan.motion_blur, library, threads, progress)?;
     Ok(LitScene { accel, materials, lights, plan })
 }
 
-/// The cells, `resolution` of them along what the camera and its gather rays see.
-fn layout(
+/// Cells as fine as what the camera and its gather rays see asks for, `resolution` of them along its longest side.
+fn grid(
     lit: &LitScene<'_>,
     seen: &[Reading],
+    landings: &PilotLandings,
     settings: &RenderSettings,
     resolution: u32,
-    progress: &Progress,
-) -> Result<Layout, RenderError> {
+) -> Grid {
     let scene = lit.accel.scene();
-    let box_seen = seen_bounds(seen, scene.bounds);
     let bounds = scene.bounds.map(Vec3::as_dvec3);
     let world_origin = -scene.space.center * scene.space.scale;
-    let mut grid = Grid::new(box_seen, bounds, resolution, world_origin);
-    grid.refine(seen, settings.pyramid.adaptive_levels);
-    let classes =
-        if settings.pyramid.normal_classes == "54" { NormalClasses::FiftyFour } else { NormalClasses::Six };
-    let mut triangles: Vec<(u32, u32)> = Vec::new();
-    for (index, object) in scene.objects.iter().enumerate().filter(|_| lit.plan.indirect()) {
-        let primitives = 0..object.mesh.triangles.len();
-        let received =
-            primitives.filter(|&i| lit.materials[object.material(i)].classes().intersects(LobeSet::READ));
-        triangles.extend(received.map(|i| (index as u32, i as u32)));
-    }
-    let triangle = |i: usize| {
-        let (object, primitive) = triangles[i];
-        let object = &scene.objects[object as usize];
-        let material = &lit.materials[object.material(primitive as usize)];
-        SurfaceTriangle {
-            corners: object.corners(primitive as usize),
-            normal: lit.accel.geometric_normal(triangles[i].0, primitive),
-            glossy: material.classes().intersects(LobeSet::ROUGH),
-        }
-    };
-    let keep_going = || !progress.is_cancelled();
-    let base_cell_size = grid.base_cell_size();
-    let open = |points: &[SidePoint]| openness::open(lit, base_cell_size, points);
-    Layout::new(grid, classes, triangles.len(), triangle, open, keep_going).ok_or(RenderError::Cancelled)
+    let mut grid = Grid::new(seen_bounds(seen, scene.bounds), bounds, resolution, world_origin);
+    grid.refine(seen, landings, settings.pyramid.adaptive_levels);
+    grid
 }
 
 /// Points beyond this share on either side do not decide how fine the cells are.

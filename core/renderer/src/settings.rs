@@ -87,6 +87,8 @@ pub struct GatherSettings {
     pub max_depth: u32,
     /// What answers for the light at the ends of gather rays.
     pub estimator: EstimatorKind,
+    /// One gather hit in so many is checked; 0 for none.
+    pub audit: u32,
     /// Photons that an estimate of the photon map, or of what is built on it, reaches to.
     pub photons_per_estimate: u32,
 }
@@ -150,6 +152,8 @@ pub struct EffectSettings {
     pub alpha_transparency: Switch,
     /// Blur of what is not in focus.
     pub depth_of_field: Switch,
+    /// Blur of what moves while the shutter is open.
+    pub motion_blur: Switch,
 }
 
 /// Knobs of the machine.
@@ -212,6 +216,7 @@ impl Default for GatherSettings {
             retrace_distance: 1.732_050_8,
             max_depth: 32,
             estimator: EstimatorKind::Pyramid,
+            audit: 1000,
             photons_per_estimate: 50,
         }
     }
@@ -315,6 +320,7 @@ pub const KNOBS: &[Knob] = &[
     knob("gather", "retrace_distance", Kind::Float { minimum: 0.0, maximum: 8.0 }, "cells", "Gather rays shorter than this many cells are continued one bounce, which keeps corners right; 0 never"),
     knob("gather", "max_depth", int(1, 1000), "bounces", "Mirror, glass and short-ray bounces after which a path ends"),
     knob("gather", "estimator", Kind::Enum { choices: ESTIMATORS }, "", "Where gather rays read the light: the pyramid, or another method to measure it against"),
+    knob("gather", "audit", int(0, 1_000_000), "hits", "One gather hit in so many is also followed along a path to its end, which measures how far the pyramid is off; 0 for none; changes nothing in the picture"),
     knob("gather", "photons_per_estimate", int(2, 10_000), "photons", "Photons an estimate reaches to, where photons are read one by one; the pyramid does not use it"),
     knob("effects", "direct_light", SWITCH, "", "Light that comes straight from lights to surfaces the camera sees; Off leaves it out"),
     knob("effects", "indirect_diffuse", SWITCH, "", "Light that comes by way of diffuse surfaces; Off leaves it out, and its photons"),
@@ -325,6 +331,7 @@ pub const KNOBS: &[Knob] = &[
     knob("effects", "emissive_meshes", SWITCH, "", "Light of emissive surfaces; Off makes them dark"),
     knob("effects", "alpha_transparency", SWITCH, "", "Light straight through transparent surfaces; Off makes them opaque"),
     knob("effects", "depth_of_field", SWITCH, "", "Blur of what is not in focus, where the camera's depth of field is on; Off makes everything sharp"),
+    knob("effects", "motion_blur", SWITCH, "", "Blur of what moves while the shutter is open, where the scene's motion blur is on; Off makes everything stand still"),
     knob("film", "filter", Kind::Enum { choices: &["blackman_harris", "box"] }, "", "Pixel filter"),
     knob("film", "filter_width", Kind::Float { minimum: 0.1, maximum: 10.0 }, "pixels", "Width of the pixel filter as in Cycles: a box is that wide, Blackman-Harris reaches that far to either side"),
     knob("film", "exposure", Kind::Float { minimum: 0.0, maximum: 1e6 }, "", "Factor of all light in the picture, as Cycles' exposure"),

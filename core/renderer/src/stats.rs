@@ -167,6 +167,40 @@ pub struct PictureError {
     pub rms_peak: f64,
 }
 
+/// A cell whose look-ups disagree with paths, more than chance explains.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CellDisagreement {
+    /// Its center (m).
+    pub position: [f64; 3],
+    /// Its edge (m).
+    pub size: f64,
+    /// Its normal class.
+    pub class: usize,
+    /// Hits that were followed.
+    pub hits: u64,
+    /// What was read by what was found; `None` where there is no light at all.
+    pub ratio: Option<f64>,
+    /// Chance that any cell of the picture would look like this one if all were right.
+    pub significance: f64,
+}
+
+/// What the auditor found: how far the pyramid is off in this picture.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct AuditStats {
+    /// Gather hits that were followed along a path.
+    pub hits: u64,
+    /// What look-ups have too much, in percent of the picture's mean; below 0: too little.
+    pub bias: f64,
+    /// How sure that is: with a confidence of 95 % it is off by no more (percent of the picture's mean).
+    pub interval: f64,
+    /// Cells, of all levels, with enough hits to be judged.
+    pub cells_tested: usize,
+    /// Those that disagree.
+    pub cells_disagreeing: usize,
+    /// Of these the first hundred, by what they do to the picture.
+    pub cells: Vec<CellDisagreement>,
+}
+
 /// Everything a render reports.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Stats {
@@ -197,4 +231,6 @@ pub struct Stats {
     /// Standard error of the combined picture: noise of gather rays, light samples and photons; `None` where there was no
     /// second pass to compare with.
     pub error: Option<PictureError>,
+    /// How far the pyramid is off; `None` where it was not audited.
+    pub audit: Option<AuditStats>,
 }

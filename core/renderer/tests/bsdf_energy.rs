@@ -2,7 +2,9 @@
 
 mod bsdf_support;
 
-use bsdf_support::{RADIANCE, diffuse, glass, glossy, prepared, principled, sampled_albedo, seen};
+use bsdf_support::{
+    RADIANCE, diffuse, glass, glossy, prepared, principled, sampled_albedo, seen, sheen, translucent,
+};
 use rgp_renderer::bsdf::{LobeSet, PreparedMaterial};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::scene::record::ClosureRecord;
@@ -54,22 +56,24 @@ fn white_glass_returns_everything_from_outside_and_never_more() {
 
 #[test]
 fn white_principled_never_returns_more_than_arrives() {
-    let variants: [ClosureRecord; 6] = [
+    let variants: [ClosureRecord; 7] = [
         principled(|p| p.base_color = Rgb::WHITE),
         principled(|p| (p.base_color, p.metallic) = (Rgb::WHITE, 1.0)),
         principled(|p| (p.base_color, p.metallic, p.coat_weight) = (Rgb::WHITE, 0.5, 1.0)),
         principled(|p| (p.base_color, p.coat_weight, p.coat_ior) = (Rgb::WHITE, 1.0, 2.0)),
         principled(|p| (p.base_color, p.ior, p.specular_ior_level) = (Rgb::WHITE, 1.8, 1.0)),
+        principled(|p| (p.base_color, p.sheen_weight) = (Rgb::WHITE, 1.0)),
         principled(|p| (p.base_color, p.ior) = (Rgb::WHITE, 0.7)),
     ];
     for (index, variant) in variants.iter().enumerate() {
         for roughness in ROUGHNESSES {
             let ClosureRecord::Principled(mut record) = variant.clone() else { unreachable!() };
             (record.roughness, record.coat_roughness) = (roughness, 1.0 - roughness);
+            record.sheen_roughness = roughness;
             let material = prepared(ClosureRecord::Principled(record));
             for cos in COSINES {
                 let what = format!("variant {index}, roughness {roughness}, cosine {cos}");
-                let bound = if index == 5 { INSIDE } else { OUTSIDE };
+                let bound = if index == 6 { INSIDE } else { OUTSIDE };
                 let albedo = albedo(&material, cos, true, bound, &what);
                 assert!(albedo > 0.9 && albedo < 1.0 + bound, "{what}: {albedo}");
             }
@@ -84,6 +88,32 @@ fn lambert_albedo_is_its_color() {
         let bsdf = seen(&bsdf_of, cos, true);
         assert_eq!(bsdf.albedo(LobeSet::ALL), Rgb::splat(0.37));
         assert!((sampled_albedo(&bsdf, LobeSet::ALL, RADIANCE, 48) - 0.37).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn translucence_sends_its_color_through_and_nothing_back() {
+    let material = prepared(translucent(0.37));
+    for (cos, front) in COSINES.into_iter().flat_map(|cos| [(cos, true), (cos, false)]) {
+        let bsdf = seen(&material, cos, front);
+        assert_eq!(bsdf.albedo(LobeSet::TRANSLUCENT), Rgb::splat(0.37));
+        assert_eq!(bsdf.diffuse_albedo(), Rgb::BLACK);
+        let through = sampled_albedo(&bsdf, LobeSet::ALL, RADIANCE, 48);
+        assert!((through - 0.37).abs() < 1e-5, "{through}");
+        let sample = bsdf.sample(0.5, [0.3, 0.6], LobeSet::ALL, RADIANCE).expect("all passes");
+        assert!(sample.is_transmission && sample.wi.dot(bsdf.frame.ns) < 0.0);
+    }
+}
+
+#[test]
+fn sheen_returns_what_its_table_says_and_never_more_than_arrives() {
+    for roughness in ROUGHNESSES {
+        let material = prepared(sheen(1.0, roughness));
+        for cos in COSINES {
+            let what = format!("sheen, roughness {roughness}, cosine {cos}");
+            let albedo = albedo(&material, cos, true, OUTSIDE, &what);
+            assert!(albedo < 1.0, "{what}: {albedo}");
+        }
     }
 }
 

@@ -2,7 +2,10 @@
 
 mod bsdf_support;
 
-use bsdf_support::{IMPORTANCE, RADIANCE, diffuse, glass, glossy, mixed, prepared, principled, seen, table};
+use bsdf_support::{
+    IMPORTANCE, RADIANCE, diffuse, glass, glossy, mixed, prepared, principled, seen, sheen, table,
+    translucent,
+};
 use glam::Vec3;
 use proptest::prelude::*;
 use rgp_renderer::bsdf::LobeSet;
@@ -17,6 +20,8 @@ fn half(closure: ClosureRecord) -> WeightedClosure {
 fn classes_follow_roughness() {
     let classes = |closure| prepared(closure).classes();
     assert_eq!(classes(diffuse(0.5)), LobeSet::DIFFUSE);
+    assert_eq!(classes(sheen(0.5, 0.5)), LobeSet::DIFFUSE);
+    assert_eq!(classes(translucent(0.5)), LobeSet::TRANSLUCENT);
     assert_eq!(classes(diffuse(0.0)), LobeSet::EMPTY);
     // Alpha is roughness squared: 0.25 is reached at 0.5.
     assert_eq!(classes(glossy(1.0, 0.5)), LobeSet::ROUGH);
@@ -38,11 +43,16 @@ fn every_lobe_belongs_to_the_classes_announced() {
         glossy(0.3, 0.2),
         glass(0.5, 0.7, 1.3),
         principled(|p| (p.metallic, p.transmission_weight, p.coat_weight) = (0.3, 0.5, 0.5)),
+        principled(|p| (p.metallic, p.sheen_weight) = (1.0, 0.5)),
+        translucent(0.5),
+        sheen(0.5, 0.5),
     ];
     for closure in closures {
         let material = prepared(closure);
         let bsdf = seen(&material, 0.6, true);
-        for class in [LobeSet::DIFFUSE, LobeSet::ROUGH, LobeSet::SHARP, LobeSet::DELTA] {
+        let classes =
+            [LobeSet::DIFFUSE, LobeSet::ROUGH, LobeSet::SHARP, LobeSet::DELTA, LobeSet::TRANSLUCENT];
+        for class in classes {
             assert_eq!(bsdf.has(class), material.classes().intersects(class));
         }
     }
@@ -82,6 +92,18 @@ fn coat_dims_emission() {
     assert!((lamp(0.0) - 2.0).abs() < 1e-5);
     // The hemispherical reflectance of index 1.5 is 9.2 % (Kulla and Conty 2017).
     assert!((lamp(1.0) / 2.0 - (1.0 - 0.092)).abs() < 0.01);
+}
+
+#[test]
+fn a_holdout_is_a_hole_of_its_share_and_scatters_nothing() {
+    let whole = prepared(ClosureRecord::Holdout);
+    assert_eq!(seen(&whole, 0.7, true).holdout(), 1.0);
+    assert_eq!(whole.classes(), LobeSet::EMPTY);
+    assert!(whole.is_opaque());
+    let mix = mixed(vec![half(diffuse(0.8)), half(ClosureRecord::Holdout)]);
+    assert_eq!(mix.constant_lambert(), None, "the quick path knows no holes");
+    let bsdf = seen(&mix, 0.7, true);
+    assert_eq!((bsdf.holdout(), bsdf.diffuse_albedo()), (0.5, Rgb::splat(0.4)));
 }
 
 #[test]
@@ -125,6 +147,8 @@ fn any_color() -> impl Strategy<Value = Rgb> {
 fn any_closure() -> impl Strategy<Value = ClosureRecord> {
     prop_oneof![
         any_color().prop_map(|color| ClosureRecord::Diffuse { color }),
+        any_color().prop_map(|color| ClosureRecord::Translucent { color }),
+        (any_color(), any_value()).prop_map(|(color, roughness)| ClosureRecord::Sheen { color, roughness }),
         (any_color(), any_value()).prop_map(|(color, roughness)| ClosureRecord::Glossy { color, roughness }),
         (any_color(), any_value(), any_value()).prop_map(|(color, roughness, ior)| ClosureRecord::Glass {
             color,
@@ -133,7 +157,7 @@ fn any_closure() -> impl Strategy<Value = ClosureRecord> {
         }),
         (any_color(), any_value(), any_value())
             .prop_map(|(color, roughness, ior)| ClosureRecord::Refraction { color, roughness, ior }),
-        (prop::array::uniform4(any_color()), prop::array::uniform9(any_value())).prop_map(|(c, v)| {
+        (prop::array::uniform5(any_color()), prop::array::uniform9(any_value())).prop_map(|(c, v)| {
             ClosureRecord::Principled(PrincipledRecord {
                 base_color: c[0],
                 specular_tint: c[1],
@@ -149,6 +173,9 @@ fn any_closure() -> impl Strategy<Value = ClosureRecord> {
                 coat_roughness: v[7],
                 coat_ior: v[8],
                 emission_strength: v[0],
+                sheen_weight: v[1],
+                sheen_roughness: v[2],
+                sheen_tint: c[4],
             })
         }),
     ]

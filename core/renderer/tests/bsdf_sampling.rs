@@ -3,8 +3,8 @@
 mod bsdf_support;
 
 use bsdf_support::{
-    IMPORTANCE, RADIANCE, Rng, at, chi_square, diffuse, glass, glossy, prepared, principled, seen,
-    significance,
+    IMPORTANCE, RADIANCE, Rng, at, chi_square, diffuse, glass, glossy, prepared, principled, seen, sheen,
+    significance, translucent,
 };
 use glam::Vec3;
 use rgp_renderer::bsdf::{LobeSet, PreparedMaterial};
@@ -44,13 +44,17 @@ fn check(cases: &[Case]) {
 }
 
 #[test]
-fn reflections_are_drawn_from_their_density() {
+fn wide_lobes_and_reflections_are_drawn_from_their_density() {
     let mut cases = Vec::new();
     let mut add = |name, material, cos| {
         cases.push(Case { name, material, front: true, eta: 1.0, set: LobeSet::ALL, cos });
     };
     for cos in COSINES {
         add("Lambert", prepared(diffuse(0.8)), cos);
+        add("translucent", prepared(translucent(0.8)), cos);
+        for (name, roughness) in [("sheen 0.3", 0.3), ("sheen 0.5", 0.5), ("sheen 1", 1.0)] {
+            add(name, prepared(sheen(0.9, roughness)), cos);
+        }
         for (name, alpha) in [("0.01", 0.01_f32), ("0.05", 0.05), ("0.2", 0.2), ("0.5", 0.5), ("1", 1.0)] {
             add(name, prepared(glossy(0.9, alpha.sqrt())), cos);
         }
@@ -82,6 +86,7 @@ fn principled_mixes_are_drawn_from_their_density() {
         p.metallic = 0.3;
         p.roughness = 0.6;
         p.transmission_weight = 0.4;
+        p.sheen_weight = 0.5;
     });
     let mut cases = Vec::new();
     for cos in COSINES {
@@ -102,6 +107,8 @@ fn principled_mixes_are_drawn_from_their_density() {
 fn weight_is_value_times_cosine_over_density() {
     let materials = [
         prepared(diffuse(0.5)),
+        prepared(translucent(0.5)),
+        prepared(sheen(0.5, 0.6)),
         prepared(glossy(0.8, 0.3)),
         prepared(glass(0.9, 0.4, 1.45)),
         prepared(principled(|p| {

@@ -4,6 +4,7 @@ mod bsdf_support;
 
 use bsdf_support::{
     IMPORTANCE, RADIANCE, Rng, at, diffuse, glass, glossy, prepared, principled, sampled_albedo, seen,
+    translucent,
 };
 use glam::Vec3;
 use rgp_renderer::bsdf::{LobeSet, PreparedMaterial};
@@ -41,9 +42,21 @@ fn lambert_and_single_scattering_reflection_are_reciprocal() {
 }
 
 #[test]
+fn translucence_is_reciprocal() {
+    let material = prepared(translucent(0.6));
+    pairs_above(|wo, wi| {
+        let there = material.bsdf(wo, Vec3::Z, Vec3::Z).eval(-wi, LobeSet::ALL, RADIANCE);
+        let back = material.bsdf(-wi, Vec3::Z, Vec3::Z).eval(wo, LobeSet::ALL, RADIANCE);
+        assert_eq!(there, back);
+        assert!((there.mean() - 0.6 * std::f32::consts::FRAC_1_PI).abs() < 1e-6);
+    });
+}
+
+#[test]
 fn photons_see_the_value_that_radiance_sees_the_other_way() {
     let material = prepared(principled(|p| {
         (p.roughness, p.coat_weight, p.coat_roughness) = (0.7, 0.5, 0.4);
+        p.sheen_weight = 0.6;
     }));
     let mut differs = 0;
     pairs_above(|wo, wi| {

@@ -65,23 +65,27 @@ fn distance_from_the_worlds_origin() {
     assert_same_pictures(&one, &far);
 }
 
+/// Shadow rays go elsewhere on two lamps: many, so that their mean is known.
 #[test]
 fn one_lamp_or_two_of_half_the_power() {
     let room = Room::default();
-    let one = picture(room.builder());
-    let two = picture(Room { lamps: 2, ..room }.builder());
+    let one = picture_of_many_samples(room.builder());
+    let two = picture_of_many_samples(Room { lamps: 2, ..room }.builder());
     assert_same_pictures(&one, &two);
+}
+
+fn picture_of_many_samples(builder: SceneBuilder) -> Picture {
+    let mut settings = settings(100_000, 32, 1024);
+    settings.gather.camera_samples = 1024;
+    finish_and_render(builder, &settings)
 }
 
 /// A quarter turn about an axis of the grid permutes its cells. Shadow rays go elsewhere on the lamp, which is not turned:
 /// many, so that their mean is known.
 #[test]
 fn quarter_turn() {
-    let mut settings = settings(100_000, 32, 1024);
-    settings.gather.camera_samples = 1024;
-    let picture = |builder| finish_and_render(builder, &settings);
     let room = Room::default();
-    let one = picture(room.builder());
+    let one = picture_of_many_samples(room.builder());
     let mut builder = SceneBuilder::default();
     let turn = glam::DMat4::from_rotation_z(std::f64::consts::FRAC_PI_2);
     for (mut mesh, material) in room.meshes() {
@@ -94,7 +98,7 @@ fn quarter_turn() {
     builder.add_lamp(lamp(square, room.power, DVec3::new(0.0, 0.0, 0.95)));
     let turned = |x, y, z| turn.transform_point3(DVec3::new(x, y, z));
     builder.set_camera(camera(turned(-0.8, -0.7, 0.3), turned(0.3, 0.3, -0.3), 0.9, room.pixels));
-    assert_same_pictures(&one, &picture(builder));
+    assert_same_pictures(&one, &picture_of_many_samples(builder));
 }
 
 /// Few photons make noise, not another brightness.

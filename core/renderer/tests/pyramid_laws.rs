@@ -4,7 +4,9 @@
 use glam::{DQuat, DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::math::Side;
-use rgp_renderer::pyramid::{Accumulator, Grid, Layout, NormalClasses, Pyramid, SurfaceTriangle};
+use rgp_renderer::pyramid::{
+    Accumulator, Grid, Layout, NormalClasses, Pyramid, SidePoint, SurfaceTriangle, Surroundings,
+};
 
 /// Edge of a finest cell.
 const CELL: f64 = 1.0 / 64.0;
@@ -17,6 +19,34 @@ const ANCHOR_OFFSET: f64 = 0.381_966;
 const CELLS: u64 = 27;
 
 const SIDE: f64 = CELLS as f64 * CELL;
+
+/// A square from the origin of scene space to (SIDE, SIDE, 0), turned about the origin.
+struct Square(DQuat);
+
+impl Surroundings for Square {
+    fn triangle_count(&self) -> usize {
+        2
+    }
+
+    fn triangle(&self, i: usize) -> SurfaceTriangle {
+        let p = |x: f64, y: f64| self.0 * DVec3::new(x, y, 0.0) * SIDE;
+        let third = if i == 0 { [p(1.0, 0.0), p(1.0, 1.0)] } else { [p(1.0, 1.0), p(0.0, 1.0)] };
+        let corners = [p(0.0, 0.0), third[0], third[1]];
+        SurfaceTriangle { corners, normal: normal(corners), glossy: false }
+    }
+
+    fn open(&self, points: &[SidePoint]) -> Vec<bool> {
+        vec![true; points.len()]
+    }
+
+    fn sees(&self, _: Vec3, _: Vec3) -> bool {
+        true
+    }
+
+    fn keep_going(&self) -> bool {
+        true
+    }
+}
 
 /// Three levels over a square from the origin of scene space to (SIDE, SIDE, 0), turned about the origin.
 fn front(normal: Vec3) -> Side {
@@ -35,12 +65,7 @@ fn layout(turned: DQuat) -> Layout {
     let world_origin = DVec3::splat(-(2.5 + ANCHOR_OFFSET) * CELL);
     let grid = Grid::new(seen, seen, 32, world_origin);
     assert_eq!(grid.levels.len(), 3);
-    let p = |x: f64, y: f64| turned * DVec3::new(x, y, 0.0) * SIDE;
-    let triangles = [[p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0)], [p(0.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)]];
-    let triangle =
-        |i: usize| SurfaceTriangle { corners: triangles[i], normal: normal(triangles[i]), glossy: false };
-    Layout::new(grid, NormalClasses::Six, 2, triangle, |points| vec![true; points.len()], || true)
-        .expect("nobody cancels")
+    Layout::new(grid, NormalClasses::Six, &Square(turned)).expect("nobody cancels")
 }
 
 /// Photon `i` of `n`², evenly over the square.
@@ -60,18 +85,20 @@ fn constant_field(layout: &Layout, turned: DQuat, irradiance: f64, n: u64, photo
             "{p} has no cell"
         );
     }
-    Pyramid::build(accumulator, layout, photons_per_cell, |_, _| true, || true).expect("nobody cancels")
+    Pyramid::build(accumulator, layout, photons_per_cell, &Square(turned)).expect("nobody cancels")
 }
 
-/// Irradiance of the level's cells times their surface, summed.
+/// Irradiance of the level's cells times the part of the square in them, summed; the square is not turned.
 fn flux_of_level(pyramid: &Pyramid, layout: &Layout, level: usize) -> f64 {
     let (cells, grid) = (&layout.levels[level], &layout.grid.levels[level]);
-    let fluxes = cells.keys.iter().zip(&cells.surfaces).map(|(key, surface)| {
+    let fluxes = cells.keys.iter().map(|key| {
         let (cell, class) = key.cell(grid);
-        let middle = (grid.lattice(cell).as_dvec3() + 0.5) * f64::from(grid.cell_size);
-        let p = middle - layout.grid.offset_f64(DVec3::ZERO);
-        let irradiance = pyramid.view(0).irradiance(p.as_vec3(), class, level);
-        f64::from(irradiance.0[0]) * surface.area as f64 * layout.area_unit
+        let low =
+            grid.lattice(cell).as_dvec3() * f64::from(grid.cell_size) - layout.grid.offset_f64(DVec3::ZERO);
+        let middle = low + 0.5 * f64::from(grid.cell_size);
+        let inside = (low + f64::from(grid.cell_size)).min(DVec3::splat(SIDE)) - low.max(DVec3::ZERO);
+        let irradiance = pyramid.view(0).irradiance(middle.as_vec3(), class, level);
+        f64::from(irradiance.0[0]) * inside.x * inside.y
     });
     fluxes.sum()
 }
@@ -95,7 +122,8 @@ fn flux_is_the_same_on_every_level() {
             accumulator.deposit(0, p.as_vec3(), front(Vec3::Z), Rgb::splat(flux));
         }
         assert_eq!((accumulator.deposited(), accumulator.lost()), (photons, 0));
-        let pyramid = Pyramid::build(accumulator, &layout, 16, |_, _| true, || true).expect("nobody cancels");
+        let pyramid =
+            Pyramid::build(accumulator, &layout, 16, &Square(DQuat::IDENTITY)).expect("nobody cancels");
         for level in 0..3 {
             let flux = flux_of_level(&pyramid, &layout, level);
             assert!((flux / total - 1.0).abs() < 1e-6, "{photons} photons, level {level}: {flux} of {total}");
@@ -157,7 +185,7 @@ fn the_order_of_deposits_does_not_matter() {
         for i in order {
             accumulator.deposit(0, position(i, n).as_vec3(), front(Vec3::Z), flux(i));
         }
-        Pyramid::build(accumulator, &layout, 16, |_, _| true, || true).expect("nobody cancels")
+        Pyramid::build(accumulator, &layout, 16, &Square(DQuat::IDENTITY)).expect("nobody cancels")
     };
     let (up, down) = (build(&mut (0..n * n)), build(&mut (0..n * n).rev()));
     for level in 0..3 {

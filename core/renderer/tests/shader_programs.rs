@@ -4,7 +4,7 @@ use glam::{Vec3, Vec4};
 use proptest::prelude::{ProptestConfig, Strategy, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
 use rgp_renderer::shader::{
     Aside, Encoding, Extension, Instruction, Interpolation, MOST_INSTRUCTIONS, NormalSpace, Pixels, Point,
-    Program, Quantity, Texture, Value,
+    Program, Quantity, Texture, Tile, Value,
 };
 use serde_json::{Value as Json, json};
 
@@ -158,6 +158,12 @@ fn textures_and_tables_must_exist() {
         Program::new(vec![constant.clone(), image(1)], 1)
             .is_err_and(|message| message.contains("texture 1 of 1"))
     );
+    let tiles = vec![Tile { column: 0, row: 0, texture: 0 }, Tile { column: 1, row: 0, texture: 3 }];
+    let tiled = Instruction::TiledImage { tiles, vector: 0, extension, interpolation, unassociate: false };
+    assert!(
+        Program::new(vec![constant.clone(), tiled], 1)
+            .is_err_and(|message| message.contains("texture 3 of 1"))
+    );
     let ramp = Instruction::Ramp { factor: 0, table: vec![[0.0; 4]], stepped: false };
     assert!(
         Program::new(vec![constant.clone(), ramp], 0).is_err_and(|message| message.contains("table of 1"))
@@ -166,6 +172,33 @@ fn textures_and_tables_must_exist() {
         Program::new(vec![constant; MOST_INSTRUCTIONS + 1], 0)
             .is_err_and(|message| message.contains("at most"))
     );
+}
+
+#[test]
+fn each_square_of_the_plane_has_its_own_tile() {
+    let flat = |value: u8| {
+        Texture::new([1, 1], Pixels::Bytes(vec![[value; 4]]), Encoding::Linear)
+            .expect("a texture of one texel")
+    };
+    let textures = [flat(51), flat(102)];
+    let tiles = vec![Tile { column: 0, row: 0, texture: 0 }, Tile { column: 2, row: 1, texture: 1 }];
+    let image = Instruction::TiledImage {
+        tiles,
+        vector: 0,
+        extension: Extension::Repeat,
+        interpolation: Interpolation::Linear,
+        unassociate: false,
+    };
+    let seen = |x: f32, y: f32| {
+        let place = Instruction::Constant { value: [x, y, 0.0, 1.0] };
+        let program = Program::new(vec![place, image.clone()], textures.len()).expect("a program");
+        program.run(&Anywhere(Vec4::ZERO), &textures)[1].v
+    };
+    assert!((seen(0.4, 0.7) - Vec4::splat(0.2)).abs().max_element() < 1e-6);
+    assert!((seen(2.9, 1.1) - Vec4::splat(0.4)).abs().max_element() < 1e-6);
+    for (x, y) in [(1.5, 0.5), (2.5, 0.5), (-0.5, 0.5)] {
+        assert_eq!(seen(x, y), Vec4::new(1.0, 0.0, 1.0, 1.0), "there is no tile at {x}, {y}");
+    }
 }
 
 #[test]

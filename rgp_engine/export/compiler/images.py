@@ -1,4 +1,4 @@
-"""Images as the core's textures."""
+"""Images as the core's textures: single ones, one of a sequence, and UDIM tiles."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..image import pixels_of
+from ..image_file import opened, sequence_file, sequence_frame, tile_files
 
 if TYPE_CHECKING:
     from .compiler import Compiler
@@ -17,26 +18,60 @@ _DATA = ("Non-Color", "Raw", "Generic Data", "Utility - Raw")
 def texture_of(c: "Compiler", b_node: Any) -> int | None:
     """The core's number of a texture node's image, handed over when it is met first; None where it cannot be read."""
     b_image = b_node.image
-    if b_image is None or b_image.source not in ("FILE", "GENERATED"):
+    if b_image is None:
+        return None
+    if b_image.source == "SEQUENCE":
+        frame = sequence_frame(b_node.image_user, c.context.b_depsgraph.scene_eval.frame_current)
+        return _texture_in(c, b_image, sequence_file(b_image, frame))
+    if b_image.source not in ("FILE", "GENERATED"):
         return None
     textures = c.context.textures
     key = b_image.name_full
     if key not in textures:
-        pixels = image_pixels(b_image)
-        index = None
-        if pixels is not None:
-            _make_finite(c, b_image, pixels)
-            index = c.context.builder.add_texture(b_image.name, pixels, _encoding(c, b_image))
-        textures[key] = index
+        textures[key] = _add_texture(c, b_image, b_image.name)
     return textures[key]
 
 
-def _encoding(c: "Compiler", b_image: Any) -> str:
+def tiles_of(c: "Compiler", b_node: Any) -> list[dict[str, int]]:
+    """The core's tiles of a texture node's image; none where it has no tiles that can be read."""
+    b_image = b_node.image
+    if b_image is None or b_image.source != "TILED":
+        return []
+    tiles = []
+    for column, row, path in tile_files(b_image):
+        texture = _texture_in(c, b_image, path)
+        if texture is not None and column >= 0 and row >= 0:
+            tiles.append({"column": column, "row": row, "texture": texture})
+    return tiles
+
+
+def _texture_in(c: "Compiler", b_image: Any, path: str) -> int | None:
+    """The core's number of one file of an image of several."""
+    textures = c.context.textures
+    key = f"{b_image.name_full}\n{path}"
+    if key not in textures:
+        with opened(b_image, path) as b_file:
+            textures[key] = None if b_file is None else _add_texture(c, b_file, b_image.name)
+        if textures[key] is None:
+            c.context.log.add(b_image.name, f'the file "{path}" cannot be read')
+    return textures[key]
+
+
+def _add_texture(c: "Compiler", b_image: Any, name: str) -> int | None:
+    pixels = image_pixels(b_image)
+    if pixels is None:
+        return None
+    _make_finite(c, name, pixels)
+    index: int = c.context.builder.add_texture(name, pixels, _encoding(c, b_image, name))
+    return index
+
+
+def _encoding(c: "Compiler", b_image: Any, name: str) -> str:
     space = b_image.colorspace_settings.name
     if b_image.is_float or space in _LINEAR:
         return "linear"
     if space != "sRGB":
-        c.context.log.add(b_image.name, f"the color space {space} is not supported yet; sRGB is used instead")
+        c.context.log.add(name, f"the color space {space} is not supported yet; sRGB is used instead")
     return "srgb"
 
 
@@ -44,13 +79,13 @@ def _encoding(c: "Compiler", b_image: Any) -> str:
 _BRIGHTEST_HALF = 65504.0
 
 
-def _make_finite(c: "Compiler", b_image: Any, pixels: npt.NDArray[Any]) -> None:
+def _make_finite(c: "Compiler", name: str, pixels: npt.NDArray[Any]) -> None:
     """Replaces what is no finite number, in place, and says so."""
     bad = int(np.count_nonzero(~np.isfinite(pixels).all(axis=2)))
     if bad:
         np.nan_to_num(pixels, copy=False, nan=0.0, posinf=_BRIGHTEST_HALF, neginf=0.0)
         c.context.log.add(
-            b_image.name,
+            name,
             f"{bad} pixels are not finite numbers; 0 is used, or {_BRIGHTEST_HALF:.0f} for infinity",
         )
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..coordinates import matrix_array
 from ..nodes import Output
-from .images import texture_of, unassociates
+from .images import texture_of, tiles_of, unassociates
 from .mapping import own_mapping
 from .sky import sky_texture
 
@@ -17,11 +17,10 @@ _EXTENSIONS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR":
 
 def _image(c: "Compiler", source: Output) -> "Operand | None":
     b_node = source.b_node
-    texture = texture_of(c, b_node)
-    if texture is None or b_node.projection not in ("FLAT", "BOX"):
+    texture, tiles = texture_of(c, b_node), tiles_of(c, b_node)
+    if not _is_rendered(b_node.projection, texture, tiles):
         return None
     fields = {
-        "texture": texture,
         "extension": _EXTENSIONS[b_node.extension],
         "interpolation": _interpolation(c, b_node),
         "unassociate": unassociates(b_node),
@@ -30,10 +29,16 @@ def _image(c: "Compiler", source: Output) -> "Operand | None":
     if b_node.projection == "BOX":
         normal = c.quantity("object_normal")
         blend = float(b_node.projection_blend)
-        color = c.emit("box_image", vector=vector, normal=normal, blend=blend, **fields)
+        color = c.emit("box_image", texture=texture, vector=vector, normal=normal, blend=blend, **fields)
+    elif tiles:
+        color = c.emit("tiled_image", tiles=tiles, vector=vector, **fields)
     else:
-        color = c.emit("image", vector=vector, **fields)
+        color = c.emit("image", texture=texture, vector=vector, **fields)
     return c.emit("alpha", of=color) if source.b_socket.identifier == "Alpha" else color
+
+
+def _is_rendered(projection: str, texture: int | None, tiles: "list[dict[str, int]]") -> bool:
+    return projection == "FLAT" if tiles else texture is not None and projection in ("FLAT", "BOX")
 
 
 def _environment(c: "Compiler", source: Output) -> "Operand | None":
@@ -249,8 +254,8 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
 
 SOURCES: "dict[str, Callable[[Compiler, Output], bool]]" = {
     **dict.fromkeys(("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP", "TEX_SKY"), _always),
-    "TEX_IMAGE": lambda c, source: (
-        texture_of(c, source.b_node) is not None and source.b_node.projection in ("FLAT", "BOX")
+    "TEX_IMAGE": lambda c, source: _is_rendered(
+        source.b_node.projection, texture_of(c, source.b_node), tiles_of(c, source.b_node)
     ),
     "TEX_ENVIRONMENT": lambda c, source: texture_of(c, source.b_node) is not None,
     "UVMAP": _known(_uv_map),

@@ -16,8 +16,10 @@ from .sheet import contact_sheet
 
 _TITLES = {
     "lamp": "Lamps and the world",
+    "world": "Worlds that differ from direction to direction",
     "material": "Shaders, under an even world and under a square lamp",
     "path": "Ways of light",
+    "motion": "Motion blur",
     "node": "Nodes",
 }
 
@@ -61,8 +63,8 @@ def _introduction(figures: Mapping[str, Mapping[str, Any]], blender: str) -> str
     return f"""# Agreement with Cycles
 
 Written by `make agreement`, with Cycles of Blender {blender}. Every feature is alone in a scene of a few objects, built
-by `tests/render/cases.py`, `path_cases.py` and `node_cases.py`, and rendered by both engines in one process. The
-figures are also in [agreement.json](agreement.json).
+by `cases.py`, `world_cases.py`, `path_cases.py` and `node_cases.py` in `tests/render`, and rendered by both engines in
+one process. The figures are also in [agreement.json](agreement.json).
 
 {passed} of {len(rendered)} features agree: their means differ by at most {LARGEST_MEAN_DIFFERENCE:.0%}, and their
 pixels by at most {LARGEST_RMS:.0%} (RMS, of the mean) beyond the noise. The noise is known from {len(SEEDS)} pictures

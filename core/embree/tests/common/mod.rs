@@ -53,7 +53,7 @@ pub(crate) fn commit(builder: SceneBuilder) -> CommittedScene {
 
 /// A ray seen by everything, without end.
 pub(crate) fn ray(origin: [f32; 3], direction: [f32; 3]) -> Ray {
-    Ray { origin, direction, t_near: 0.0, t_far: f32::INFINITY, mask: u32::MAX }
+    Ray { origin, direction, t_near: 0.0, t_far: f32::INFINITY, mask: u32::MAX, time: 0.0 }
 }
 
 /// A small generator of even random numbers, the same on every machine.

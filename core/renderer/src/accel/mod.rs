@@ -12,7 +12,7 @@ pub use packet::{LANES, Packet};
 use crate::error::RenderError;
 use crate::light::LampProxy;
 use crate::progress::Progress;
-use crate::scene::{Mesh, Scene, visibility};
+use crate::scene::{MIDDLE, Mesh, Scene, visibility};
 
 /// Rays leave a surface this far along its geometric normal (scene units): some ulp of a coordinate of the unit cube,
 /// above the rounding of a hit and below anything modelled.
@@ -27,14 +27,16 @@ pub struct Ray {
     pub direction: Vec3,
     /// Kinds of ray that see (bits of [`visibility`]).
     pub mask: u32,
+    /// When, while the shutter is open: 0 to 1.
+    pub time: f32,
 }
 
 impl Ray {
     /// A ray leaving a surface at `p`, on the side of the unit geometric normal `ng` it points to.
     #[must_use]
-    pub fn leaving(p: Vec3, ng: Vec3, direction: Vec3, mask: u32) -> Self {
+    pub fn leaving(p: Vec3, ng: Vec3, direction: Vec3, mask: u32, time: f32) -> Self {
         let side = if direction.dot(ng) < 0.0 { -OFFSET } else { OFFSET };
-        Self { origin: p + ng * side, direction, mask }
+        Self { origin: p + ng * side, direction, mask, time }
     }
 }
 
@@ -78,13 +80,15 @@ pub struct Accel<'a> {
 }
 
 impl<'a> Accel<'a> {
-    /// Builds the tree. `proxies` are lamps that rays can meet.
+    /// Builds the tree. `proxies` are lamps that rays can meet. Where nothing `moves`, everything is where it is in the
+    /// middle of the shutter's time, whatever the time of a ray.
     ///
     /// # Errors
     /// Embree missing or out of memory; [`RenderError::Cancelled`].
     pub fn build(
         scene: &'a Scene,
         proxies: &[LampProxy],
+        moves: bool,
         library: &Path,
         threads: usize,
         progress: &Progress,
@@ -109,16 +113,21 @@ impl<'a> Accel<'a> {
                     Some(built) => built,
                     None => {
                         let mut builder = SceneBuilder::new(&device, BuildQuality::High)?;
-                        add_mesh(&mut builder, 0, &object.mesh, u32::MAX)?;
+                        add_mesh(&mut builder, 0, &object.mesh, moves, u32::MAX)?;
                         let built = builder.commit(&keep_going)?;
                         shared.push((key, built.clone()));
                         built
                     }
                 };
-                top.add_instance(id, &built, &columns(transform), object.visibility)?;
+                let steps = if moves && !object.motion.is_empty() {
+                    object.motion.iter().map(columns).collect()
+                } else {
+                    vec![columns(transform)]
+                };
+                top.add_moving_instance(id, &built, &steps, object.visibility)?;
                 objects.push(ObjectRecord::Instance(transform.matrix3.inverse().transpose()));
             } else {
-                add_mesh(&mut top, id, &object.mesh, object.visibility)?;
+                add_mesh(&mut top, id, &object.mesh, moves, object.visibility)?;
                 objects.push(ObjectRecord::Flat(records.len()));
                 records.extend((0..object.mesh.triangles.len()).map(|primitive| TriangleRecord {
                     ng: normal_of(&object.mesh, primitive),
@@ -193,11 +202,12 @@ impl<'a> Accel<'a> {
             t_near: 0.0,
             t_far: 1.0,
             mask: visibility::DIFFUSE,
+            time: MIDDLE,
         };
         !self.embree.occluded(&ray)
     }
 
-    /// Unit geometric normal of a triangle, outward as modelled.
+    /// Unit geometric normal of a triangle, outward as modelled, in the middle of the shutter's time.
     #[must_use]
     #[inline]
     pub fn geometric_normal(&self, object: u32, primitive: u32) -> Vec3 {
@@ -210,7 +220,7 @@ impl<'a> Accel<'a> {
         }
     }
 
-    /// Unit geometric normal and material of a triangle, in one look.
+    /// Unit geometric normal, as in [`Accel::geometric_normal`], and material of a triangle, in one look.
     #[must_use]
     #[inline]
     pub fn triangle(&self, object: u32, primitive: u32) -> (Vec3, usize) {
@@ -231,7 +241,7 @@ impl<'a> Accel<'a> {
         }
     }
 
-    /// Unit shading normal, interpolated where the mesh is smooth.
+    /// Unit shading normal in the middle of the shutter's time, interpolated where the mesh is smooth.
     #[must_use]
     pub fn shading_normal(&self, hit: &Hit) -> Vec3 {
         let mesh = &self.scene.objects[hit.object as usize].mesh;
@@ -263,9 +273,19 @@ fn geometry_id(index: usize) -> Result<u32, RenderError> {
         .map_err(|_| RenderError::Scene("there are more objects than the ray tracer can number".into()))
 }
 
-fn add_mesh(builder: &mut SceneBuilder, id: u32, mesh: &Mesh, mask: u32) -> Result<(), RenderError> {
-    let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.to_array()).collect();
-    Ok(builder.add_triangles(id, &positions, &mesh.triangles, mask)?)
+fn add_mesh(
+    builder: &mut SceneBuilder,
+    id: u32,
+    mesh: &Mesh,
+    moves: bool,
+    mask: u32,
+) -> Result<(), RenderError> {
+    let still = std::slice::from_ref(&mesh.positions);
+    let steps = if moves && !mesh.steps.is_empty() { mesh.steps.as_slice() } else { still };
+    let steps: Vec<Vec<[f32; 3]>> =
+        steps.iter().map(|step| step.iter().map(|p| p.to_array()).collect()).collect();
+    let steps: Vec<&[[f32; 3]]> = steps.iter().map(Vec::as_slice).collect();
+    Ok(builder.add_moving_triangles(id, &steps, &mesh.triangles, mask)?)
 }
 
 fn normal_of(mesh: &Mesh, primitive: usize) -> Vec3 {
@@ -280,5 +300,5 @@ fn columns(transform: &DAffine3) -> [f32; 12] {
 
 fn embree_ray(ray: &Ray, t_far: f32) -> EmbreeRay {
     let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-    EmbreeRay { origin, direction, t_near: 0.0, t_far, mask: ray.mask }
+    EmbreeRay { origin, direction, t_near: 0.0, t_far, mask: ray.mask, time: ray.time }
 }

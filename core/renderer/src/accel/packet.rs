@@ -52,17 +52,18 @@ impl Packet {
         rays.dir_z[lane] = ray.direction.z;
         rays.t_near[lane] = 0.0;
         rays.t_far[lane] = t_far;
-        rays.time[lane] = 0.0;
+        rays.time[lane] = ray.time;
         rays.mask[lane] = ray.mask;
         self.valid[lane] = -1;
     }
 
-    /// Sets every lane from arrays: origins and directions by axis. Lanes that are not `set` stay out.
+    /// Sets every lane from arrays: origins and directions by axis, and times. Lanes that are not `set` stay out.
     #[inline(always)]
     pub fn set_all(
         &mut self,
         origins: &[[f32; LANES]; 3],
         directions: &[[f32; LANES]; 3],
+        times: &[f32; LANES],
         set: &[bool; LANES],
         mask: u32,
     ) {
@@ -71,7 +72,7 @@ impl Packet {
         [rays.dir_x, rays.dir_y, rays.dir_z] = *directions;
         rays.t_near = [0.0; LANES];
         rays.t_far = [f32::INFINITY; LANES];
-        rays.time = [0.0; LANES];
+        rays.time = *times;
         rays.mask = [mask; LANES];
         self.valid = set.map(|set| -i32::from(set));
     }
@@ -91,6 +92,7 @@ impl Packet {
             origin: Vec3::new(rays.org_x[lane], rays.org_y[lane], rays.org_z[lane]),
             direction: Vec3::new(rays.dir_x[lane], rays.dir_y[lane], rays.dir_z[lane]),
             mask: rays.mask[lane],
+            time: rays.time[lane],
         }
     }
 

@@ -10,10 +10,10 @@
 //!   uniform_grid            Hansson, Harrysson 2002   flux and count of cells, added until there is enough
 //!   reverse_photon_map      Havran et al. 2005        hits in a tree, photons look for them
 //!   pyramid_2006            Yue et al.                the pyramid as published
-//!   path                                              no structure: the truth, with noise
 //! ```
+//!
+//! The estimator `path`, which has no structure, audits the product too: [`crate::estimator::Path`].
 
-mod path;
 mod photon_map;
 mod photon_store;
 mod precomputed_irradiance;
@@ -21,7 +21,6 @@ mod pyramid_2006;
 mod reverse_photon_map;
 mod uniform_grid;
 
-pub use path::Path;
 pub use photon_map::PhotonMap;
 pub use photon_store::{PhotonStore, Photons};
 pub use precomputed_irradiance::PrecomputedIrradiance;

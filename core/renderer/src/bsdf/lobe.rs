@@ -4,6 +4,7 @@ use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
+use super::sheen::Sheen;
 use super::{LobeSet, ShadingFrame, fresnel, ggx};
 use crate::color::Rgb;
 use crate::math::Frame;
@@ -39,6 +40,10 @@ pub(super) fn transmission_class(alpha: f32, eta: f32) -> LobeSet {
 pub(super) enum Shape {
     /// Lambert reflection.
     Lambert,
+    /// Lambert transmission.
+    Translucent,
+    /// Reflection from fibers.
+    Sheen(Sheen),
     /// GGX reflection.
     Reflection { alpha: f32 },
     /// GGX refraction; `eta` is the index on the far side over that on the viewer's side.
@@ -80,9 +85,20 @@ impl Lobe {
         Self { shape, fresnel, weight: albedo, albedo, class: LobeSet::DIFFUSE, slot }
     }
 
+    /// Lambert transmission of `albedo`.
+    pub(super) fn translucent(albedo: Rgb, slot: u8) -> Self {
+        Self { shape: Shape::Translucent, class: LobeSet::TRANSLUCENT, ..Self::lambert(albedo, slot) }
+    }
+
+    /// Sheen of `color` and Blender's roughness, towards a viewer at `cos` from the normal.
+    pub(super) fn sheen(color: Rgb, roughness: f32, cos: f32, slot: u8) -> Self {
+        let (sheen, albedo) = Sheen::new(roughness, cos);
+        Self { shape: Shape::Sheen(sheen), ..Self::lambert(color * albedo, slot) }
+    }
+
     /// True for lobes on the side away from the viewer.
     pub(super) fn is_transmission(&self) -> bool {
-        matches!(self.shape, Shape::Transmission { .. })
+        matches!(self.shape, Shape::Transmission { .. } | Shape::Translucent)
     }
 
     /// Index on the far side over that on the viewer's, where the light crosses; 1 where it stays.
@@ -107,7 +123,11 @@ impl Lobe {
         // Floors keep grazing pairs finite; their cosine takes them out of any integral.
         let (cos_o, cos_i) = (wo.dot(frame.ns).max(1e-6), wi.dot(frame.ns).abs().max(1e-6));
         match self.shape {
-            Shape::Lambert => (self.weight * FRAC_1_PI, cos_i * FRAC_1_PI),
+            Shape::Lambert | Shape::Translucent => (self.weight * FRAC_1_PI, cos_i * FRAC_1_PI),
+            Shape::Sheen(sheen) => {
+                let density = sheen.density(frame, wo, wi);
+                (self.weight * (density / cos_i), density)
+            }
             Shape::Reflection { alpha } => {
                 let h = (wo + wi).normalize_or(frame.ns);
                 let cos_h = wo.dot(h).clamp(0.0, 1.0);
@@ -145,6 +165,8 @@ impl Lobe {
         };
         match self.shape {
             Shape::Lambert => Some(Frame::new(frame.ns).from_local(cosine_hemisphere(u))),
+            Shape::Translucent => Some(-Frame::new(frame.ns).from_local(cosine_hemisphere(u))),
+            Shape::Sheen(sheen) => Some(sheen.sample(frame, wo, u)),
             Shape::Reflection { alpha } => {
                 let h = microfacet(alpha);
                 Some((h * (2.0 * wo.dot(h)) - wo).normalize())

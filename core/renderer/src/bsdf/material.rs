@@ -24,9 +24,21 @@ const LEAST_TINT: f32 = 0.02;
 /// A closure that makes lobes; Lambert, transparency and constant emission are merged in the material.
 #[derive(Clone, Debug)]
 enum PreparedClosure {
-    Glossy { color: Rgb, rough: Roughness },
+    Glossy {
+        color: Rgb,
+        rough: Roughness,
+    },
     Glass(Glass),
-    Refraction { rough: Roughness, ior: f32 },
+    Refraction {
+        rough: Roughness,
+        ior: f32,
+    },
+    /// Its color is in the weight.
+    Translucent,
+    /// Its color is in the weight.
+    Sheen {
+        roughness: f32,
+    },
     Principled(Box<Principled>),
 }
 
@@ -48,6 +60,8 @@ pub struct PreparedMaterial {
     bare_emission: Rgb,
     /// Share of light that passes straight through.
     straight: Rgb,
+    /// Share of a camera ray that is a hole in the picture.
+    holdout: f32,
     closures: Vec<(Rgb, PreparedClosure)>,
     classes: LobeSet,
     constant_lambert: Option<Rgb>,
@@ -146,6 +160,14 @@ impl PreparedMaterial {
                 self.bare_emission += weight * radiance;
                 return;
             }
+            ClosureRecord::Holdout => {
+                self.holdout += weight.mean();
+                return;
+            }
+            ClosureRecord::Translucent { color } => {
+                self.closures.push((weight * color, PreparedClosure::Translucent));
+                return;
+            }
             ClosureRecord::Glossy { color, roughness } => {
                 PreparedClosure::Glossy { color, rough: Roughness::new(roughness) }
             }
@@ -159,6 +181,10 @@ impl PreparedMaterial {
             ClosureRecord::Refraction { color, roughness, ior } => {
                 let closure = PreparedClosure::Refraction { rough: Roughness::new(roughness), ior };
                 self.closures.push((weight * color, closure));
+                return;
+            }
+            ClosureRecord::Sheen { color, roughness } => {
+                self.closures.push((weight * color, PreparedClosure::Sheen { roughness }));
                 return;
             }
             ClosureRecord::Principled(ref record) => {
@@ -186,7 +212,7 @@ impl PreparedMaterial {
         self.transparency = self.straight;
         self.refracts = self.closures.iter().any(|(_, closure)| closure.transmits());
         self.etas = self.closures.iter().flat_map(|(_, closure)| closure.etas()).collect();
-        if self.closures.is_empty() && self.straight.is_black() {
+        if self.closures.is_empty() && self.straight.is_black() && self.holdout == 0.0 {
             self.constant_lambert = Some(self.lambert);
         }
         self.mean_emission = self.cosine_mean_emission();
@@ -227,7 +253,7 @@ impl PreparedMaterial {
     pub fn leave_out_transparency(&mut self) {
         self.left_out.transparency = true;
         (self.straight, self.transparency) = (Rgb::BLACK, Rgb::BLACK);
-        if self.closures.is_empty() && self.varying.is_none() {
+        if self.closures.is_empty() && self.varying.is_none() && self.holdout == 0.0 {
             self.constant_lambert = Some(self.lambert);
         }
     }
@@ -271,10 +297,22 @@ impl PreparedMaterial {
         self.transparency
     }
 
-    /// True when no light passes through, straight or refracted.
+    /// True when light is refracted through it.
+    #[must_use]
+    pub fn refracts(&self) -> bool {
+        self.refracts
+    }
+
+    /// True when no light passes through: straight, refracted or scattered.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
-        self.transparency.is_black() && !self.refracts
+        self.transparency.is_black() && !self.refracts && !self.classes.intersects(LobeSet::TRANSLUCENT)
+    }
+
+    /// See [`Bsdf::holdout`].
+    #[must_use]
+    pub(super) fn holdout(&self) -> f32 {
+        self.holdout
     }
 
     /// The albedo, where the material scatters as one constant Lambert lobe and nothing passes through it. A black
@@ -343,6 +381,8 @@ impl PreparedClosure {
                 let eta = if entering { *ior } else { 1.0 / ior };
                 dielectric::push_refraction(lobes, weight, *rough, eta, cos, slot);
             }
+            Self::Translucent => lobes.push(Lobe::translucent(weight, slot)),
+            Self::Sheen { roughness } => lobes.push(Lobe::sheen(weight, *roughness, cos, slot)),
             Self::Principled(principled) => {
                 let seen = principled.push(lobes, weight, entering, cos, slot);
                 return weight * seen * principled.emission;
@@ -361,14 +401,16 @@ impl PreparedClosure {
             Self::Glossy { rough, .. } => rough.reflection_class(),
             Self::Glass(glass) => glass.classes(),
             Self::Refraction { rough, ior } => super::lobe::transmission_class(rough.alpha, *ior),
+            Self::Translucent => LobeSet::TRANSLUCENT,
+            Self::Sheen { .. } => LobeSet::DIFFUSE,
             Self::Principled(principled) => principled.classes(),
         }
     }
 
-    /// True when refracted light passes.
+    /// True when light is refracted.
     fn transmits(&self) -> bool {
         match self {
-            Self::Glossy { .. } => false,
+            Self::Glossy { .. } | Self::Translucent | Self::Sheen { .. } => false,
             Self::Glass(_) | Self::Refraction { .. } => true,
             Self::Principled(principled) => principled.transmits(),
         }
@@ -399,7 +441,10 @@ impl PreparedClosure {
 /// Most lobes `closure` can make besides the merged Lambert lobe.
 fn most_lobes(closure: &ClosureRecord) -> usize {
     match closure {
-        ClosureRecord::Glossy { .. } | ClosureRecord::Refraction { .. } => 1,
+        ClosureRecord::Glossy { .. }
+        | ClosureRecord::Refraction { .. }
+        | ClosureRecord::Translucent { .. }
+        | ClosureRecord::Sheen { .. } => 1,
         ClosureRecord::Glass { .. } => 2,
         ClosureRecord::Principled(_) => principled::LOBES,
         _ => 0,

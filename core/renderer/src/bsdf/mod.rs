@@ -26,12 +26,13 @@ mod principled;
 mod reflection;
 mod rough;
 mod sanitize;
+mod sheen;
 mod varying;
 
 use std::ops::{BitOr, Deref};
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use smallvec::SmallVec;
 
 use crate::color::Rgb;
@@ -54,7 +55,7 @@ pub struct LobeSet(u8);
 impl LobeSet {
     /// No class.
     pub const EMPTY: Self = Self(0);
-    /// Lambert reflection.
+    /// Lambert reflection, and sheen: read from irradiance by its albedo, exact where it is followed.
     pub const DIFFUSE: Self = Self(1);
     /// GGX reflection with alpha of [`ROUGH_ALPHA`] and above: read from direction bins.
     pub const ROUGH: Self = Self(2);
@@ -62,14 +63,16 @@ impl LobeSet {
     pub const SHARP: Self = Self(4);
     /// Mirror reflection and smooth refraction.
     pub const DELTA: Self = Self(8);
+    /// Lambert transmission: what arrives on one side leaves the other.
+    pub const TRANSLUCENT: Self = Self(16);
     /// Every class with a finite density.
-    pub const NON_DELTA: Self = Self(7);
+    pub const NON_DELTA: Self = Self(23);
     /// Classes whose light can be read where a gather ray ends.
-    pub const READ: Self = Self(3);
+    pub const READ: Self = Self(19);
     /// Classes that are followed and never read: mirrors, refraction and sharp glossy lobes.
     pub const FOLLOWED: Self = Self(12);
     /// Every class.
-    pub const ALL: Self = Self(15);
+    pub const ALL: Self = Self(31);
 
     /// True when the sets have a class in common.
     #[must_use]
@@ -220,6 +223,14 @@ impl Bsdf<'_> {
         self.wo
     }
 
+    /// The same, of a surface that was turned, with where the ray came from.
+    #[must_use]
+    pub fn turned(self, rotation: Quat) -> Self {
+        let frame = &self.frame;
+        let frame = ShadingFrame { ns: rotation * frame.ns, ng: rotation * frame.ng, ..*frame };
+        Self { wo: rotation * self.wo, frame, ..self }
+    }
+
     /// Shading normal of the side that light must come from to reach `wo`; `None` where it may come through.
     #[must_use]
     pub fn lit_side(&self) -> Option<Vec3> {
@@ -236,6 +247,12 @@ impl Bsdf<'_> {
     #[must_use]
     pub fn albedo(&self, set: LobeSet) -> Rgb {
         self.lobes(set).map(|lobe| lobe.albedo).sum()
+    }
+
+    /// Share of a camera ray that is a hole in the picture.
+    #[must_use]
+    pub fn holdout(&self) -> f32 {
+        self.material.holdout()
     }
 
     /// Color at normal incidence of the lobes of class [`LobeSet::ROUGH`], at least 0.02. Direction bins hold radiance

@@ -1,4 +1,4 @@
-//! Blender's Principled BSDF (Blender 4.0 and later) as a stack of lobes, from the top: coat, metal, glass, specular
+//! Blender's Principled BSDF (Blender 4.0 and later) as a stack of lobes, from the top: sheen, coat, metal, glass, specular
 //! layer, diffuse. Every layer dims those below by an estimate of what it reflects.
 
 use super::dielectric::Glass;
@@ -12,7 +12,7 @@ use crate::scene::record::PrincipledRecord;
 const NEGLIGIBLE: f32 = 1e-5;
 
 /// Most lobes one Principled BSDF makes.
-pub(super) const LOBES: usize = 6;
+pub(super) const LOBES: usize = 7;
 
 /// A Principled BSDF without its alpha, its parameters checked and converted.
 #[derive(Clone, Debug)]
@@ -20,6 +20,7 @@ pub(super) struct Principled {
     /// Radiance, as seen through the coat.
     pub(super) emission: Rgb,
     base_color: Rgb,
+    sheen: Option<SheenLayer>,
     coat: Option<Coat>,
     metallic: f32,
     metal: Metal,
@@ -27,6 +28,14 @@ pub(super) struct Principled {
     glass: Glass,
     /// `None` where the index is exactly 1.
     specular: Option<Layer>,
+}
+
+/// Fibers on top of all.
+#[derive(Clone, Copy, Debug)]
+struct SheenLayer {
+    /// Share times tint.
+    color: Rgb,
+    roughness: f32,
 }
 
 /// The coat and the tint of what is seen through it.
@@ -61,6 +70,10 @@ impl Principled {
         Self {
             emission: record.emission_color * record.emission_strength,
             base_color: record.base_color,
+            sheen: (record.sheen_weight > NEGLIGIBLE).then(|| SheenLayer {
+                color: record.sheen_tint * record.sheen_weight,
+                roughness: record.sheen_roughness,
+            }),
             coat: (record.coat_weight > NEGLIGIBLE).then(|| Coat {
                 weight: record.coat_weight,
                 ior: record.coat_ior,
@@ -91,13 +104,16 @@ impl Principled {
 
     /// The albedo where nothing but a diffuse lobe is left.
     pub(super) fn lambert(&self) -> Option<Rgb> {
-        let bare = self.coat.is_none() && self.metallic <= NEGLIGIBLE && self.transmission <= NEGLIGIBLE;
+        let bare = self.coat.is_none()
+            && self.sheen.is_none()
+            && self.metallic <= NEGLIGIBLE
+            && self.transmission <= NEGLIGIBLE;
         (bare && self.specular.is_none()).then_some(self.base_color)
     }
 
-    /// True when what is emitted below the coat depends on the direction.
+    /// True when what is emitted below coat and sheen depends on the direction.
     pub(super) fn dims_its_emission(&self) -> bool {
-        self.coat.is_some() && !self.emission.is_black()
+        (self.coat.is_some() || self.sheen.is_some()) && !self.emission.is_black()
     }
 
     /// Shares of metal, glass and the layered diffuse base, without the coat.
@@ -108,7 +124,7 @@ impl Principled {
 
     /// Classes that can occur.
     pub(super) fn classes(&self) -> LobeSet {
-        let mut set = LobeSet::EMPTY;
+        let mut set = if self.sheen.is_some() { LobeSet::DIFFUSE } else { LobeSet::EMPTY };
         if let Some(layer) = self.coat.as_ref().and_then(|coat| coat.layer) {
             set = set | layer.rough.reflection_class();
         }
@@ -156,7 +172,8 @@ impl Principled {
 
     /// Adds the lobes, and returns what part of the emission leaves towards the viewer at `cos` from the normal.
     pub(super) fn push(&self, lobes: &mut LobeList, weight: Rgb, entering: bool, cos: f32, slot: u8) -> Rgb {
-        let below_coat = self.push_coat(lobes, weight, cos, slot);
+        let below_sheen = self.push_sheen(lobes, weight, cos, slot + 6);
+        let below_coat = self.push_coat(lobes, weight * below_sheen, cos, slot) * below_sheen;
         let [metal, glass, base] = self.shares();
         let weight = weight * below_coat;
         if metal > NEGLIGIBLE {
@@ -175,6 +192,14 @@ impl Principled {
             }
         }
         below_coat
+    }
+
+    /// Adds the sheen, and returns what part of the light passes it.
+    fn push_sheen(&self, lobes: &mut LobeList, weight: Rgb, cos: f32, slot: u8) -> f32 {
+        let Some(SheenLayer { color, roughness }) = self.sheen else { return 1.0 };
+        let lobe = Lobe::sheen(color, roughness, cos, slot);
+        lobes.push(Lobe { weight: weight * lobe.weight, albedo: weight * lobe.albedo, ..lobe });
+        1.0 - lobe.albedo.max_channel()
     }
 
     /// Adds the coat, and returns what part of the light reaches what lies below and comes back tinted. The path through

@@ -56,6 +56,13 @@ impl Sanitizer {
             ClosureRecord::Transparent { color } => {
                 ClosureRecord::Transparent { color: self.color(color, 1.0) }
             }
+            ClosureRecord::Translucent { color } => {
+                ClosureRecord::Translucent { color: self.color(color, 1.0) }
+            }
+            ClosureRecord::Sheen { color, roughness } => {
+                ClosureRecord::Sheen { color: self.color(color, 1.0), roughness: self.value(roughness, UNIT) }
+            }
+            ClosureRecord::Holdout => ClosureRecord::Holdout,
             ClosureRecord::Emission { radiance } => {
                 ClosureRecord::Emission { radiance: self.color(radiance, BRIGHTEST) }
             }
@@ -88,6 +95,9 @@ impl Sanitizer {
             specular_ior_level: self.value(record.specular_ior_level, [0.0, 1e3]),
             specular_tint: self.color(record.specular_tint, 1e3),
             transmission_weight: self.value(record.transmission_weight, UNIT),
+            sheen_weight: self.value(record.sheen_weight, UNIT),
+            sheen_roughness: self.value(record.sheen_roughness, UNIT),
+            sheen_tint: self.color(record.sheen_tint, 1.0),
             coat_weight: self.value(record.coat_weight, UNIT),
             coat_roughness: self.value(record.coat_roughness, UNIT),
             coat_ior: self.value(record.coat_ior, [1.0, IOR[1]]),

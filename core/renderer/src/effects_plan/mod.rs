@@ -4,19 +4,20 @@
 //! Effects are of two kinds. Some are **classes of light paths** ([`Effect::is_path_class`]): every path from a light to
 //! the eye belongs to one of them, or meets the eye through mirrors and glass alone and is always computed (decision 7).
 //! Others are **parts of the scene** that paths begin or pass at: they are left out of the materials and of the world,
-//! and all paths with them. Depth of field is a part of the camera, which is a pinhole without it.
+//! and all paths with them. Depth of field is a part of the camera, which is a pinhole without it; without motion blur all
+//! stands still as in the middle of the shutter's time.
 
 mod costs;
 
 use crate::bsdf::{LobeSet, PreparedMaterial};
-use crate::scene::{Scene, World};
+use crate::scene::{Object, Scene, World};
 use crate::settings::{EffectSettings, Switch};
 use crate::stats::EffectStats;
 
 pub use costs::{Costs, Meter, Owner};
 
 /// Number of effects.
-pub const EFFECTS: usize = 9;
+pub const EFFECTS: usize = 10;
 
 /// One effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +40,8 @@ pub enum Effect {
     AlphaTransparency,
     /// Blur of what is not in focus.
     DepthOfField,
+    /// Blur of what moves while the shutter is open.
+    MotionBlur,
 }
 
 impl Effect {
@@ -53,6 +56,7 @@ impl Effect {
         Self::EmissiveMeshes,
         Self::AlphaTransparency,
         Self::DepthOfField,
+        Self::MotionBlur,
     ];
 
     /// Name in settings and statistics.
@@ -68,6 +72,7 @@ impl Effect {
             Self::EmissiveMeshes => "emissive_meshes",
             Self::AlphaTransparency => "alpha_transparency",
             Self::DepthOfField => "depth_of_field",
+            Self::MotionBlur => "motion_blur",
         }
     }
 
@@ -99,6 +104,7 @@ impl Effect {
             Self::EmissiveMeshes => settings.emissive_meshes,
             Self::AlphaTransparency => settings.alpha_transparency,
             Self::DepthOfField => settings.depth_of_field,
+            Self::MotionBlur => settings.motion_blur,
         }
     }
 }
@@ -160,6 +166,8 @@ pub struct EffectsPlan {
     pub depth_of_field: bool,
     /// Caustics that the eye sees are called for, whether they are computed or not.
     pub has_casters: bool,
+    /// Rays have times, and things are where they are then.
+    pub motion_blur: bool,
     /// Gather rays have something to find.
     pub gathers: bool,
 }
@@ -180,11 +188,11 @@ impl EffectsPlan {
             || materials.iter().any(|m| !m.emission().is_black());
         let mut planned = path_classes(scene, &used, settings, materials, world);
         planned.extend(parts);
-        planned.push(depth_of_field(scene, settings));
+        planned.extend([depth_of_field(scene, settings), motion_blur(scene, settings)]);
         let computed = |effect: Effect| planned[effect as usize].is_computed();
         let lobes = |effect, set| if computed(effect) { set } else { LobeSet::EMPTY };
-        let reads =
-            lobes(Effect::IndirectDiffuse, LobeSet::DIFFUSE) | lobes(Effect::IndirectGlossy, LobeSet::ROUGH);
+        let reads = lobes(Effect::IndirectDiffuse, LobeSet::DIFFUSE | LobeSet::TRANSLUCENT)
+            | lobes(Effect::IndirectGlossy, LobeSet::ROUGH);
         Self {
             direct: computed(Effect::DirectLight),
             light_samples,
@@ -193,6 +201,7 @@ impl EffectsPlan {
             reads,
             transparency: computed(Effect::AlphaTransparency),
             depth_of_field: computed(Effect::DepthOfField),
+            motion_blur: computed(Effect::MotionBlur) && moves(scene),
             gathers: planned.iter().any(|line| {
                 line.is_computed() && (line.effect.is_path_class() || line.effect == Effect::MirrorsAndGlass)
             }),
@@ -320,7 +329,7 @@ fn path_classes(
     let receiver = has(LobeSet::NON_DELTA, "surface");
     let because = [
         (Effect::DirectLight, light.clone().filter(|_| receiver.is_some())),
-        (Effect::IndirectDiffuse, lit(has(LobeSet::DIFFUSE, "diffuse surface"))),
+        (Effect::IndirectDiffuse, lit(has(LobeSet::DIFFUSE | LobeSet::TRANSLUCENT, "diffuse surface"))),
         (Effect::IndirectGlossy, lit(has(LobeSet::ROUGH, "glossy surface"))),
         (Effect::Caustics, lit(first(&sharp_kind).filter(|_| receiver.is_some()))),
     ];
@@ -343,9 +352,25 @@ fn depth_of_field(scene: &Scene, settings: &EffectSettings) -> Planned {
     Planned { effect, switch: effect.switch(settings), because }
 }
 
+/// True where anything moves while the shutter is open.
+fn moves(scene: &Scene) -> bool {
+    scene.camera.moves() || scene.objects.iter().any(Object::moves)
+}
+
+/// Plans the time the shutter is open.
+fn motion_blur(scene: &Scene, settings: &EffectSettings) -> Planned {
+    let effect = Effect::MotionBlur;
+    let object = scene.objects.iter().find(|object| object.moves()).map(|object| {
+        let what = if object.motion.is_empty() { "changes its shape" } else { "moves" };
+        format!("'{}' {what}", object.name)
+    });
+    let because = if scene.camera.moves() { Some(format!("'{}' moves", scene.camera.name)) } else { object };
+    Planned { effect, switch: effect.switch(settings), because }
+}
+
 /// What a material with lobes that are followed is called.
 fn sharp_kind(material: &PreparedMaterial) -> Option<&'static str> {
-    let refracts = !material.is_opaque() && material.transparency().is_black();
+    let refracts = material.refracts() && material.transparency().is_black();
     material.classes().intersects(LobeSet::FOLLOWED).then_some(if refracts { "glass" } else { "mirror" })
 }
 

@@ -77,6 +77,8 @@ pub struct Film {
     /// Of the passes of either half.
     halves: RwLock<[Vec<Sums>; 2]>,
     nonfinite: Mutex<u64>,
+    /// Where the light is known to be wrong; empty where nothing is.
+    audit: RwLock<Vec<f32>>,
 }
 
 /// The samples of a pass in the order of the picture's pixels, ready to be added to the pixels around them.
@@ -112,6 +114,7 @@ impl Film {
             spread: Mutex::default(),
             halves: RwLock::new([black(), black()]),
             nonfinite: Mutex::new(0),
+            audit: RwLock::default(),
         }
     }
 
@@ -193,6 +196,28 @@ impl Film {
         let halves = self.halves.read().unwrap_or_else(PoisonError::into_inner);
         let [a, b] = &*halves;
         a.par_iter().zip(b).map(|(a, b)| self.exposure * error::of_pixel(a, b).sqrt()).collect()
+    }
+
+    /// Mean of the whole picture over pixels and channels, before exposure.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        let halves = self.halves.read().unwrap_or_else(PoisonError::into_inner);
+        let [a, b] = &*halves;
+        let sum: f64 = a.iter().zip(b).map(|(a, b)| f64::from(a.with(b).combined().mean())).sum();
+        sum / (self.width * self.height).max(1) as f64
+    }
+
+    /// Keeps what an audit has to show, one value per pixel, rows from the bottom.
+    pub fn set_audit(&self, pixels: Option<Vec<f32>>) {
+        *self.audit.write().unwrap_or_else(PoisonError::into_inner) = pixels.unwrap_or_default();
+    }
+
+    /// Part of each pixel's light that an audit found wrong, rows from the bottom: from -1 (all is missing) to 1 (there
+    /// should be none), 0 where nothing is known to be wrong.
+    #[must_use]
+    pub fn audit(&self) -> Vec<f32> {
+        let audit = self.audit.read().unwrap_or_else(PoisonError::into_inner);
+        if audit.is_empty() { vec![0.0; self.width * self.height] } else { audit.clone() }
     }
 
     /// Standard error of the whole picture; `None` before both halves know it.

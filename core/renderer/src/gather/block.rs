@@ -11,9 +11,10 @@ use crate::color::Rgb;
 use crate::effects_plan::Effect;
 use crate::estimator::{Estimator, Footprint};
 use crate::film::{BLOCK, PixelSample, TileRect};
+use crate::light::Receiver;
 use crate::lit_scene::ray_kind;
-use crate::sampling::{PixelSeeds, Rng, hash, shuffled_point};
-use crate::scene::visibility;
+use crate::sampling::{PixelSeeds, Rng, hash, shuffled_point, shuffled_points};
+use crate::scene::{MIDDLE, visibility};
 use crate::settings::GatherSampling;
 
 use super::camera::{CameraRay, camera_ray};
@@ -26,6 +27,9 @@ use super::{Gatherer, Width};
 
 /// One block in so many is clocked, to tell what each effect costs.
 const CLOCKED: u64 = 64;
+
+/// Tells a pixel's points on lamps from its points in the pixel.
+const LAMP_SEED: u32 = 0x9E37_79B1;
 
 /// Work on one block of pixels.
 pub(super) struct Block<'a, 'g, E: Estimator> {
@@ -125,13 +129,14 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             self.samples[lane] = PixelSample { offset, taken: true, ..Default::default() };
             let offset = DVec2::new(f64::from(offset[0]), f64::from(offset[1]));
             let position = DVec2::new(f64::from(frame_x), f64::from(frame_y)) + 0.5 + offset;
+            let time = if g.lit.plan.motion_blur { self.time(lane) } else { MIDDLE };
             let CameraRay { ray, reach, start } = match &g.lens {
-                None => camera_ray(camera, g.lit, position, None),
+                None => camera_ray(camera, g.lit, position, None, time),
                 Some(lens) => {
                     let owner = self.traces.meter.enter(Effect::DepthOfField);
                     let point = lens.point(shuffled_point(self.sample, hash(key, 4) as u32));
                     self.traces.meter.back(owner);
-                    camera_ray(camera, g.lit, position, Some((lens, point)))
+                    camera_ray(camera, g.lit, position, Some((lens, point)), time)
                 }
             };
             self.start[lane] = start;
@@ -150,12 +155,21 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         }
     }
 
+    /// When the camera sample of a lane is taken, while the shutter is open.
+    fn time(&mut self, lane: usize) -> f32 {
+        let owner = self.traces.meter.enter(Effect::MotionBlur);
+        let [u, _] = shuffled_point(self.sample, hash(self.keys[lane], 5) as u32);
+        let time = self.gatherer.lit.accel.scene().camera.shutter.time(u);
+        self.traces.meter.back(owner);
+        time
+    }
+
     /// Takes the common case: the camera sees a surface that is nothing but a constant Lambert reflector.
     fn start_lambert(&mut self, lane: usize, ray: &Ray, hit: Option<Hit>) -> bool {
         let g = self.gatherer;
         let Some(hit) = hit.filter(|hit| !g.lit.accel.is_lamp(hit.object)) else { return false };
         let (ng, material) = g.lit.accel.triangle(hit.object, hit.primitive);
-        if g.sampling != GatherSampling::Cosine || g.is_holdout(&hit) {
+        if g.sampling != GatherSampling::Cosine || g.is_holdout(&hit) || g.lit.moves(hit.object) {
             return false;
         }
         let albedo = match g.plain[material] {
@@ -169,7 +183,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         };
         let frame = g.lit.frame(ray, &hit, ng);
         let p = ray.origin + ray.direction * hit.t;
-        self.lambert.put(lane, p, frame.ng, frame.ns, albedo);
+        self.lambert.put(lane, p, frame.ng, frame.ns, albedo, ray.time);
         self.samples[lane].alpha = 1.0;
         true
     }
@@ -194,9 +208,12 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             let mut end = None;
             let met = g.meet(ray, first.take(), sampled, &mut rng, &mut self.traces.meter, &mut end);
             let sample = &mut self.samples[lane];
-            if met.is_hole || end.is_some() || depth > 0 || !transparent_film {
+            let is_film = met.hole == 0.0 && end.is_none() && transparent_film;
+            if depth > 0 || !is_film {
                 sample.direct += throughput * met.light;
-                sample.alpha = f32::from(u8::from(!met.is_hole));
+            }
+            if depth == 0 && !is_film {
+                sample.alpha = 1.0 - met.hole;
             }
             let Some(surface) = end else { break };
             throughput *= met.through;
@@ -213,7 +230,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             throughput *= sample.weight;
             sampled.kind = ray_kind(&sample);
             sampled.width = sampled.width.after(met.distance);
-            ray = Ray::leaving(surface.p, surface.ng, sample.wi, sampled.kind | g.lit.accel.lamp_bit());
+            ray = surface.leaving(sample.wi, sampled.kind | g.lit.accel.lamp_bit());
             self.traces.rays.camera += 1;
         }
         self.traces.meter.back(owner);
@@ -227,13 +244,14 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             return;
         }
         let owner = self.traces.meter.enter(Effect::DirectLight);
+        let seeds = self.keys.map(|key| key as u32 ^ LAMP_SEED);
         for i in 0..g.light_samples {
             let index = self.sample * g.light_samples + i;
             self.packet.clear();
             let mut shadows: [Option<ShadowRay>; LANES] = [None; LANES];
+            let [x, y] = shuffled_points(index, &seeds);
             for (lane, shadow) in shadows.iter_mut().enumerate() {
-                let [x, y] = shuffled_point(index, hash(self.keys[lane], 2) as u32);
-                *shadow = self.shadow(lane, [rotate(self.keys[lane], index), x, y]);
+                *shadow = self.shadow(lane, [rotate(self.keys[lane], index), x[lane], y[lane]]);
                 let traced = shadow.as_ref().filter(|s| s.casts_shadow && !g.lit.plan.transparency);
                 if let Some(shadow) = traced {
                     self.packet.set(lane, &shadow.ray, shadow.t_far);
@@ -263,11 +281,11 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     fn shadow(&self, lane: usize, u: [f32; 3]) -> Option<ShadowRay> {
         let g = self.gatherer;
         if self.lambert.set[lane] {
-            let sample = g.lit.sample_direct(self.lambert.receiver(lane), u)?;
+            let sample = g.lit.sample_direct(self.lambert.receiver(lane), u, self.lambert.time[lane])?;
             return lambert_shadow_ray(&self.lambert, lane, &sample, g.shares);
         }
         let vertex = self.vertices[lane].as_ref()?;
-        let sample = g.lit.sample_direct(vertex.surface.receiver(), u)?;
+        let sample = g.lit.sample_direct(vertex.surface.receiver(), u, vertex.surface.time)?;
         let mut shadow = shadow_ray(&vertex.surface, &sample, LobeSet::ALL, LobeSet::ALL, g.shares)?;
         shadow.radiance *= vertex.throughput;
         Some(shadow)
@@ -291,7 +309,13 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             let rays = self.packet.len() as u64;
             self.traces.rays.gather += rays;
             self.traces.meter.count(effect, rays);
+            let auditor = self.gatherer.auditor;
+            let audited = auditor.and_then(|auditor| auditor.lane(self.keys[0], index));
+            let before = audited.map(|lane| self.samples[lane].indirect);
             self.receive(&pdfs, index);
+            if let (Some(lane), Some(before)) = (audited, before) {
+                self.audit(lane, pdfs[lane], index, before);
+            }
         }
         self.traces.meter.back(owner);
     }
@@ -321,7 +345,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             else {
                 continue;
             };
-            let leaving = Ray::leaving(vertex.surface.p, vertex.surface.ng, direction, ray.kind | lamps);
+            let leaving = vertex.surface.leaving(direction, ray.kind | lamps);
             self.packet.set(lane, &leaving, f32::INFINITY);
             self.others[lane] = Some(ray);
         }
@@ -358,7 +382,10 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
                 Some(ray) => (ray, ray.pdf.map_or(0.0, |pdf| g.solid_angle(pdf))),
                 None => (GatherRay::diffuse(self.lambert.weight[lane], Some(pdfs[lane])), solid_angles[lane]),
             };
-            let hit = self.packet.hit(lane);
+            let hit = match self.packet.hit(lane) {
+                Some(hit) if g.lit.accel.is_lamp(hit.object) => self.cross_lamps(lane, &ray, solid_angle),
+                hit => hit,
+            };
             // No closure: it would not be compiled for the wider instructions.
             let readable = match hit {
                 Some(hit) if !ray.sharp => g.readable(&self.packet.ray(lane), &hit, solid_angle),
@@ -397,6 +424,36 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         }
     }
 
+    /// Adds the light of the lamps that the ray of a lane met first; gives what is behind them.
+    #[inline(never)]
+    fn cross_lamps(&mut self, lane: usize, gather_ray: &GatherRay, solid_angle: f32) -> Option<Hit> {
+        let ray = self.packet.ray(lane);
+        let sampled = self.sampled(lane, gather_ray, solid_angle);
+        let from = Receiver { p: ray.origin, normal: sampled.lit_side };
+        let (behind, light) = self.gatherer.cross_lamps(from, &ray, 0.0, sampled, &mut self.traces.meter);
+        self.add_met(lane, gather_ray, light);
+        behind
+    }
+
+    /// Has what the gather ray of a lane brought checked; `before` is the lane's indirect light without it.
+    #[inline(never)]
+    fn audit(&mut self, lane: usize, pdf: f32, index: u32, before: Rgb) {
+        let g = self.gatherer;
+        let Some(auditor) = g.auditor.filter(|_| self.packet.is_set(lane)) else { return };
+        let Some(hit) = self.packet.hit(lane) else { return };
+        let gather_ray = match self.others[lane] {
+            Some(ray) => ray,
+            None => GatherRay::diffuse(self.lambert.weight[lane], Some(pdf)),
+        };
+        let solid_angle = gather_ray.pdf.map_or(0.0, |pdf| g.solid_angle(pdf));
+        let read = self.samples[lane].indirect - before;
+        let key = hash(self.keys[lane], u64::from(index) << 16 | 6);
+        let mapped = self.share_of_mapped(lane, &gather_ray);
+        let audited =
+            auditor.follow((self.packet.ray(lane), hit), &gather_ray, solid_angle, mapped, read, key);
+        self.traces.audited.push(audited);
+    }
+
     /// As `receive`, for a ray that meets light or anything but a constant Lambert surface, or is too short to be read.
     #[inline(never)]
     fn receive_other(
@@ -408,31 +465,44 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         index: u32,
     ) {
         let g = self.gatherer;
-        let weight = gather_ray.weight;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(index) << 16 | 2));
-        let light = g.lit.plan.direct.then_some(Effect::DirectLight);
-        let lit_side = match &self.vertices[lane] {
-            Some(vertex) => vertex.surface.bsdf.lit_side(),
-            None => Some(self.lambert.ns[lane]),
-        };
-        let width = Width::of_solid_angle(solid_angle);
-        let (pdf, kind) = (gather_ray.pdf, gather_ray.kind);
-        let mapped = Rgb::WHITE;
-        let sampled = Sampled { pdf, shares: g.shares, kind, light, lit_side, width, mapped };
+        let sampled = self.sampled(lane, gather_ray, solid_angle);
         let (ray, mut end) = (self.packet.ray(lane), None);
         let met = g.meet(ray, Some(hit), sampled, &mut rng, &mut self.traces.meter, &mut end);
-        let sample = &mut self.samples[lane];
-        // What a mirror shows is no direct light, though it belongs to the same layer of the picture.
-        if g.lit.plan.direct || gather_ray.pdf.is_none() {
-            sample.direct += weight * met.light * g.direct_share;
-        }
+        self.add_met(lane, gather_ray, met.light);
         if end.is_some() && g.lit.plan.follows() {
             let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };
-            let weight = weight * met.through;
+            let weight = gather_ray.weight * met.through;
             let mapped = self.share_of_mapped(lane, gather_ray);
             let target = Target { traces: &mut self.traces, lane, weight };
             let radiance = g.outgoing(&mut end, footprint, mapped, &mut rng, target);
             self.samples[lane].indirect += weight * radiance;
+        }
+    }
+
+    /// How the gather ray of a lane was found.
+    fn sampled(&self, lane: usize, gather_ray: &GatherRay, solid_angle: f32) -> Sampled {
+        let lit_side = match &self.vertices[lane] {
+            Some(vertex) => vertex.surface.bsdf.lit_side(),
+            None => Some(self.lambert.ns[lane]),
+        };
+        Sampled {
+            pdf: gather_ray.pdf,
+            shares: self.gatherer.shares,
+            kind: gather_ray.kind,
+            light: self.gatherer.lit.plan.direct.then_some(Effect::DirectLight),
+            lit_side,
+            width: Width::of_solid_angle(solid_angle),
+            mapped: Rgb::WHITE,
+        }
+    }
+
+    /// Adds the light that a gather ray met. What a mirror shows is no direct light, though it belongs to the same layer of
+    /// the picture.
+    fn add_met(&mut self, lane: usize, gather_ray: &GatherRay, light: Rgb) {
+        let g = self.gatherer;
+        if g.lit.plan.direct || gather_ray.pdf.is_none() {
+            self.samples[lane].direct += gather_ray.weight * light * g.direct_share;
         }
     }
 }

@@ -19,15 +19,16 @@ pub(super) struct CameraRay {
 }
 
 /// The ray through `position` of the full frame (pixels from its bottom left), and through a point of the lens if there is
-/// one.
+/// one, at a time while the shutter is open.
 #[must_use]
 pub(super) fn camera_ray(
     camera: &Camera,
     lit: &LitScene<'_>,
     position: DVec2,
     lens: Option<(&Lens, DVec2)>,
+    time: f32,
 ) -> CameraRay {
-    let [left, right, bottom, top] = camera.window;
+    let (to_scene, [left, right, bottom, top]) = camera.at(time);
     let at = position / DVec2::new(f64::from(camera.resolution[0]), f64::from(camera.resolution[1]));
     let plane = DVec2::new(left + (right - left) * at.x, bottom + (top - bottom) * at.y);
     // One unit of depth along the ray.
@@ -42,12 +43,11 @@ pub(super) fn camera_ray(
     }
     let [near, far] = camera.clip.map(f64::from);
     let near = near.max(0.0);
-    let to_scene = &camera.scene_from_camera;
     let start = to_scene.transform_point3(origin + direction * near);
     let direction = to_scene.transform_vector3(direction);
     let length = direction.length();
-    let (ray, moved) =
-        lit.entering(start, (direction / length).as_vec3(), visibility::CAMERA | lit.accel.camera_lamp_bit());
+    let mask = visibility::CAMERA | lit.accel.camera_lamp_bit();
+    let (ray, moved) = lit.entering(start, (direction / length).as_vec3(), mask, time);
     #[expect(clippy::cast_possible_truncation, reason = "rays are traced in f32")]
     let [reach, start] = [((far - near) * length) as f32 - moved, (near * length) as f32 + moved];
     CameraRay { ray, reach: reach.max(0.0), start }
@@ -89,6 +89,8 @@ mod tests {
             region: [0, 0, 200, 200],
             clip: [0.0, 100.0],
             lens: Some(lens),
+            steps: Vec::new(),
+            shutter: Vec::new(),
         });
         let camera = builder.finish().expect("a camera suffices").camera;
         let width = camera_width(&camera, camera.lens.as_ref(), samples);

@@ -58,6 +58,8 @@ impl<E: Estimator> Gatherer<'_, E> {
         let map = self.caustics.filter(|_| surface.bsdf.has(LobeSet::READ));
         map.map_or(Rgb::BLACK, |map| {
             let owner = meter.enter(Effect::Caustics);
+            let at_rest = self.lit.moves(surface.hit.object).then(|| self.lit.at_rest(surface).0);
+            let surface = at_rest.as_ref().unwrap_or(surface);
             let radiance = map.radiance(surface.p, &surface.bsdf);
             meter.back(owner);
             radiance

@@ -13,6 +13,7 @@ use crate::sampling::Rng;
 use crate::stats::RayCounts;
 
 use super::Gatherer;
+use super::audit::AuditedHit;
 
 /// Gather rays of the tiles that are answered together, about: it bounds the memory of their hits.
 const RAYS_AT_ONCE: usize = 2_000_000;
@@ -33,11 +34,17 @@ pub(super) struct Traces<P> {
     pub(super) rays: RayCounts,
     pub(super) deferred: Vec<Deferred<P>>,
     pub(super) meter: Meter,
+    pub(super) audited: Vec<AuditedHit>,
 }
 
 impl<P> Default for Traces<P> {
     fn default() -> Self {
-        Self { rays: RayCounts::default(), deferred: Vec::new(), meter: Meter::default() }
+        Self {
+            rays: RayCounts::default(),
+            deferred: Vec::new(),
+            meter: Meter::default(),
+            audited: Vec::new(),
+        }
     }
 }
 

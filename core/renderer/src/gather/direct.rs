@@ -74,7 +74,7 @@ pub(super) fn shadow_ray(
     };
     let cos = sample.wi.dot(bsdf.frame.ns).abs();
     let radiance = f * sample.radiance_over_pdf * (cos * weight);
-    let ray = Ray::leaving(surface.p, surface.ng, sample.wi, visibility::SHADOW);
+    let ray = surface.leaving(sample.wi, visibility::SHADOW);
     Some(ShadowRay { ray, t_far: reach(sample.distance), radiance, casts_shadow: sample.casts_shadow })
 }
 
@@ -97,7 +97,7 @@ pub(super) fn lambert_shadow_ray(
         power_heuristic(shares.light * sample.pdf_solid_angle, shares.bsdf * pdf)
     };
     let radiance = lanes.weight[lane] * sample.radiance_over_pdf * (pdf * weight);
-    let ray = Ray::leaving(lanes.p[lane], lanes.ng[lane], sample.wi, visibility::SHADOW);
+    let ray = Ray::leaving(lanes.p[lane], lanes.ng[lane], sample.wi, visibility::SHADOW, lanes.time[lane]);
     Some(ShadowRay { ray, t_far: reach(sample.distance), radiance, casts_shadow: sample.casts_shadow })
 }
 
@@ -137,7 +137,7 @@ fn transparencies(lit: &LitScene<'_>, shadow: &ShadowRay, rays: &mut u64, meter:
         meter.enter(Effect::AlphaTransparency);
         meter.count(Effect::AlphaTransparency, 1);
         left -= hit.t;
-        ray = Ray::leaving(surface.p, surface.ng, ray.direction, ray.mask);
+        ray = surface.leaving(ray.direction, ray.mask);
     }
     Rgb::BLACK
 }

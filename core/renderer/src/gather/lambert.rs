@@ -10,6 +10,7 @@ use crate::color::Rgb;
 use crate::light::Receiver;
 use crate::math::Frame;
 use crate::sampling::cosine_hemisphere;
+use crate::scene::MIDDLE;
 
 type Lanes = [f32; LANES];
 
@@ -23,6 +24,8 @@ pub(super) struct LambertLanes {
     /// Shading and geometric normals, towards the camera.
     pub(super) ns: [Vec3; LANES],
     pub(super) ng: [Vec3; LANES],
+    /// When each was seen, while the shutter is open.
+    pub(super) time: Lanes,
     origin: [Lanes; 3],
     geometric: [Lanes; 3],
     /// Tangent, bitangent and shading normal, by axis.
@@ -38,6 +41,7 @@ impl Default for LambertLanes {
             p: [Vec3::ZERO; LANES],
             ns: [Vec3::ZERO; LANES],
             ng: [Vec3::ZERO; LANES],
+            time: [MIDDLE; LANES],
             origin: zero,
             geometric: zero,
             frame: [zero; 3],
@@ -55,7 +59,7 @@ impl LambertLanes {
     }
 
     /// Puts a camera sample into a lane.
-    pub(super) fn put(&mut self, lane: usize, p: Vec3, ng: Vec3, ns: Vec3, weight: Rgb) {
+    pub(super) fn put(&mut self, lane: usize, p: Vec3, ng: Vec3, ns: Vec3, weight: Rgb, time: f32) {
         let frame = Frame::new(ns);
         let origin = p + ng * OFFSET;
         for axis in 0..3 {
@@ -67,6 +71,7 @@ impl LambertLanes {
         }
         self.set[lane] = true;
         self.weight[lane] = weight;
+        self.time[lane] = time;
         (self.p[lane], self.ng[lane], self.ns[lane]) = (p, ng, ns);
     }
 
@@ -98,7 +103,7 @@ impl LambertLanes {
                 + directions[2][lane] * self.geometric[2][lane];
             set[lane] &= above > 0.0 && local[2][lane] > 0.0;
         }
-        packet.set_all(&self.origin, &directions, &set, mask);
+        packet.set_all(&self.origin, &directions, &self.time, &set, mask);
         local[2].map(|z| z * FRAC_1_PI)
     }
 }

@@ -7,12 +7,14 @@
 //! One pass over the picture is one camera sample of every pixel; passes are independent and their mean is the picture.
 //! Even and odd passes read different photons: how much they differ says how far the picture is from its limit.
 
+mod audit;
 mod block;
 mod camera;
 mod caustics;
 mod convergence;
 mod deferred;
 mod direct;
+mod disagreement;
 mod floor;
 mod lambert;
 mod path;
@@ -43,11 +45,13 @@ use crate::scene::Lens;
 use crate::settings::{GatherSampling, RenderSettings};
 use crate::stats::{RayCounts, StoppedBy};
 
+pub use audit::Auditor;
 use block::{Block, widest_stratum};
 use camera::camera_width;
 use convergence::Convergence;
 use deferred::{OpenTile, Traces};
 use direct::Shares;
+pub use disagreement::Disagreement;
 pub use floor::{TraceFloor, trace_floor};
 pub use pilot::{Landings, Seen, finds, landings};
 pub use pyramid_lookup::PyramidLookup;
@@ -90,6 +94,8 @@ pub struct Gatherer<'a, E> {
     has_varying: bool,
     /// Of rays from the camera.
     camera_width: Width,
+    /// Checks look-ups.
+    auditor: Option<&'a Auditor<'a>>,
 }
 
 fn is_varying_lambert(material: &PreparedMaterial) -> bool {
@@ -178,7 +184,15 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             has_varying: varying_lambert_read.contains(&true),
             varying_lambert_read,
             camera_width: camera_width(camera, lens, gather.camera_samples),
+            auditor: None,
         }
+    }
+
+    /// The same, audited.
+    #[must_use]
+    pub const fn audited(mut self, auditor: Option<&'a Auditor<'a>>) -> Self {
+        self.auditor = auditor;
+        self
     }
 
     /// True where camera rays see a hole in the picture.
@@ -254,6 +268,9 @@ pub fn run<E: Estimator>(
             Ok(open)
         });
         film.finish_pass(gatherer.rays_of_sample(sample).len() as u32, half);
+        if let Some(auditor) = gatherer.auditor {
+            auditor.finish_pass(gatherer.rays_of_sample(sample).len() as u64);
+        }
         finished?;
         if half + 1 == SETS {
             convergence.add(pass + 1, progress.elapsed(), film.picture_error());
@@ -299,7 +316,10 @@ impl<E: Estimator> pulp::NullaryFnOnce for TileWork<'_, '_, E> {
                 block.run(x, y, tile, &mut samples);
             }
         }
-        let Traces { rays, deferred, meter } = block.finish();
+        let Traces { rays, deferred, meter, audited } = block.finish();
+        if let Some(auditor) = self.gatherer.auditor {
+            auditor.take(self.index, audited);
+        }
         if E::DEFERS {
             return Ok((rays, meter.costs, Some(OpenTile { index: self.index, samples, deferred })));
         }

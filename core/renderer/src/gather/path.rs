@@ -64,8 +64,8 @@ pub(super) struct Met {
     pub(super) distance: f32,
     /// Share of light from the surface that arrives through what is transparent before it.
     pub(super) through: Rgb,
-    /// True where the camera sees a hole in the picture; there is no surface then.
-    pub(super) is_hole: bool,
+    /// Share of a camera ray that sees a hole in the picture. Where the object is one, there is no surface.
+    pub(super) hole: f32,
 }
 
 impl<'a, E: Estimator> Gatherer<'a, E> {
@@ -96,20 +96,15 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         end: &mut Option<Surface<'a>>,
     ) -> Met {
         *end = None;
-        let mut met = Met { light: Rgb::BLACK, distance: 0.0, through: Rgb::WHITE, is_hole: false };
+        let mut met = Met { light: Rgb::BLACK, distance: 0.0, through: Rgb::WHITE, hole: 0.0 };
         let (from, lit) = (Receiver { p: ray.origin, normal: sampled.lit_side }, self.lit);
         let mut known = first;
         for _ in 0..MAX_TRANSPARENT {
             let mut hit = known.take().unwrap_or_else(|| lit.accel.intersect(&ray));
             if hit.is_some_and(|hit| lit.accel.is_lamp(hit.object)) {
-                hit = lit.accel.intersect(&Ray { mask: ray.mask & !visibility::LAMP, ..ray });
-                let until = hit.map_or(f32::INFINITY, |hit| met.distance + hit.t);
-                let (span, through) = (met.distance..until, met.through);
-                let owner = meter.enter_if(sampled.light);
-                lit.lights.lamps_crossed(from, ray.direction, span, sampled.sight(), &mut |radiance, pdf| {
-                    met.light += through * radiance * sampled.weight(pdf);
-                });
-                meter.back(owner);
+                let (behind, light) = self.cross_lamps(from, &ray, met.distance, sampled, meter);
+                met.light += met.through * light;
+                hit = behind;
             }
             let Some(hit) = hit else {
                 let world = lit.lights.has_world().then_some(Effect::EnvironmentLight);
@@ -119,11 +114,11 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             };
             met.distance += hit.t;
             let surface = end.insert(lit.surface(&ray, hit, sampled.width.at(met.distance)));
-            let is_hole = sampled.kind == visibility::CAMERA && self.is_holdout(&hit);
+            let by_camera = sampled.kind == visibility::CAMERA;
+            let is_hole = by_camera && self.is_holdout(&hit);
             if !surface.bsdf.emission.is_black() && !is_hole {
                 let owner = meter.enter(Effect::EmissiveMeshes);
-                let (direction, distance) = (ray.direction, met.distance);
-                let pdf = lit.lights.emitter_pdf(from, hit.object, hit.primitive, direction, distance);
+                let pdf = lit.emitter_pdf(from, &ray, &hit, met.distance);
                 let share = lit.lights.share_of_mesh(hit.object, sampled.sight());
                 met.light += met.through * surface.bsdf.emission * share * sampled.weight(pdf);
                 meter.back(owner);
@@ -131,20 +126,45 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             let transparency = surface.bsdf.transparency;
             let chance = transparency.mean().clamp(0.0, 1.0);
             if chance <= 0.0 || rng.draw() >= chance {
-                met.through = met.through * (1.0 / (1.0 - chance).max(f32::MIN_POSITIVE));
+                let per_chance = 1.0 / (1.0 - chance).max(f32::MIN_POSITIVE);
+                met.through = met.through * per_chance;
                 if is_hole {
-                    (met.is_hole, *end) = (true, None);
+                    (met.hole, *end) = (1.0, None);
+                } else if by_camera {
+                    met.hole = (surface.bsdf.holdout() * per_chance).min(1.0);
                 }
                 return met;
             }
             met.through = met.through * transparency * (1.0 / chance);
-            ray = Ray::leaving(surface.p, surface.ng, ray.direction, ray.mask);
+            ray = surface.leaving(ray.direction, ray.mask);
             *end = None;
             meter.enter(Effect::AlphaTransparency);
             meter.count(Effect::AlphaTransparency, 1);
         }
         met.through = Rgb::BLACK;
         met
+    }
+
+    /// Lamps do not stop a ray: what is behind those that this one met first, and their light, weighted. `travelled` is how
+    /// far the ray's origin is from `from`, where the direction was chosen.
+    pub(super) fn cross_lamps(
+        &self,
+        from: Receiver,
+        ray: &Ray,
+        travelled: f32,
+        sampled: Sampled,
+        meter: &mut Meter,
+    ) -> (Option<Hit>, Rgb) {
+        let behind = self.lit.accel.intersect(&Ray { mask: ray.mask & !visibility::LAMP, ..*ray });
+        let until = behind.map_or(f32::INFINITY, |hit| travelled + hit.t);
+        let mut light = Rgb::BLACK;
+        let owner = meter.enter_if(sampled.light);
+        let lights = &self.lit.lights;
+        lights.lamps_crossed(from, ray.direction, travelled..until, sampled.sight(), &mut |radiance, pdf| {
+            light += radiance * sampled.weight(pdf);
+        });
+        meter.back(owner);
+        (behind, light)
     }
 
     /// Light from outside the scene.
@@ -209,7 +229,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 break;
             }
             let kind = ray_kind(&sample);
-            let ray = Ray::leaving(surface.p, surface.ng, sample.wi, kind | self.lit.accel.lamp_bit());
+            let ray = surface.leaving(sample.wi, kind | self.lit.accel.lamp_bit());
             target.traces.rays.gather += 1;
             let hit = self.lit.accel.intersect(&ray);
             let readable = hit.filter(|_| !sample.is_delta).and_then(|hit| {
@@ -251,6 +271,11 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         target: &mut Target<'_, E::Place>,
     ) -> Option<Rgb> {
         let reads = self.lit.plan.reads;
+        if !E::READS_BOTH_SIDES && surface.bsdf.has(reads.and(LobeSet::TRANSLUCENT)) {
+            return None;
+        }
+        let at_rest = self.lit.moves(surface.hit.object).then(|| self.lit.at_rest(surface).0);
+        let surface = at_rest.as_ref().unwrap_or(surface);
         if !surface.bsdf.has(reads.and(LobeSet::ROUGH)) {
             return target.radiance(self.estimator, surface, reads, footprint, throughput, rng);
         }
@@ -292,7 +317,9 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         if !surface.bsdf.has(counted) {
             return Rgb::BLACK;
         }
-        let Some(sample) = self.lit.sample_direct(surface.receiver(), u) else { return Rgb::BLACK };
+        let Some(sample) = self.lit.sample_direct(surface.receiver(), u, surface.time) else {
+            return Rgb::BLACK;
+        };
         let Some(shadow) = shadow_ray(surface, &sample, lobes, counted, Shares::EVEN) else {
             return Rgb::BLACK;
         };

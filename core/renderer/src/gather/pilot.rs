@@ -8,14 +8,13 @@ use rayon::prelude::*;
 
 use super::camera::camera_ray;
 use super::readings::first_scatterer;
-use crate::accel::Ray;
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::light::{Emission, Find};
 use crate::lit_scene::{LitScene, Surface, ray_kind};
 use crate::pyramid::Reading;
 use crate::sampling::{PhotonSampler, Rng, hash};
-use crate::scene::visibility;
+use crate::scene::{MIDDLE, visibility};
 
 /// Mirrors, panes and transparent surfaces a path passes.
 const MAX_DEPTH: u32 = 8;
@@ -30,7 +29,7 @@ pub fn finds(lit: &LitScene<'_>, seed: u32) -> Vec<Find> {
     let of_pixel = |i: u32| {
         let mut rng = Rng::new(hash(hash(u64::from(seed), 0x61_69_6d), u64::from(i)));
         let at = DVec2::new(f64::from(i % EDGE), f64::from(i / EDGE)) + 0.5;
-        let ray = camera_ray(camera, lit, at / f64::from(EDGE) * frame, None).ray;
+        let ray = camera_ray(camera, lit, at / f64::from(EDGE) * frame, None, MIDDLE).ray;
         let mut finds = Vec::new();
         if let Some(surface) = first_scatterer(lit, ray, MAX_DEPTH, &mut rng) {
             for _ in 0..GATHER_RAYS {
@@ -69,20 +68,20 @@ fn onward<'a>(
 ) -> Option<Surface<'a>> {
     let sample = surface.bsdf.sample(rng.draw(), rng.draw2(), LobeSet::ALL, TransportMode::Radiance)?;
     *throughput *= sample.weight.map(|c| c.min(1.0));
-    let ray = Ray::leaving(surface.p, surface.ng, sample.wi, ray_kind(&sample));
+    let ray = surface.leaving(sample.wi, ray_kind(&sample));
     first_scatterer(lit, ray, MAX_DEPTH, rng)
 }
 
 /// True where light from far away along `wi` comes to a surface, panes of glass passed straight.
 fn is_lit(lit: &LitScene<'_>, surface: &Surface<'_>, wi: Vec3) -> bool {
-    let mut ray = Ray::leaving(surface.p, surface.ng, wi, visibility::SHADOW);
+    let mut ray = surface.leaving(wi, visibility::SHADOW);
     for _ in 0..MAX_DEPTH {
         let Some(hit) = lit.accel.intersect(&ray) else { return true };
         let met = lit.surface(&ray, hit, 0.0);
         if met.bsdf.has(LobeSet::NON_DELTA) && met.bsdf.transparency.is_black() {
             return false;
         }
-        ray = Ray::leaving(met.p, met.ng, wi, ray.mask);
+        ray = met.leaving(wi, ray.mask);
     }
     false
 }
@@ -136,7 +135,8 @@ pub struct Landings {
 pub fn landings(lit: &LitScene<'_>, light: usize, seen: &Seen, seed: u32) -> Landings {
     const PHOTONS: u64 = 4096;
     let lands = |emission: &Emission, rng: &mut Rng| {
-        let (ray, _) = lit.entering(emission.origin.as_dvec3(), emission.direction, visibility::DIFFUSE);
+        let (ray, _) =
+            lit.entering(emission.origin.as_dvec3(), emission.direction, visibility::DIFFUSE, MIDDLE);
         first_scatterer(lit, ray, MAX_DEPTH, rng).is_some_and(|surface| seen.holds(surface.p))
     };
     let fluxes: Vec<Option<f64>> = (0..PHOTONS)

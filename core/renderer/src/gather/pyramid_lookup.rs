@@ -40,6 +40,8 @@ impl<'a> PyramidLookup<'a> {
 impl Estimator for PyramidLookup<'_> {
     type Place = Place;
 
+    const READS_BOTH_SIDES: bool = true;
+
     /// `None` for rays too short for the cell they would read.
     #[inline(always)]
     fn place(&self, p: Vec3, side: Side, _wo: Vec3, footprint: Footprint) -> Option<Place> {
@@ -73,11 +75,16 @@ impl Estimator for PyramidLookup<'_> {
         }
         let bsdf = &surface.bsdf;
         let level = self.pyramid.level_for(footprint.area());
-        let class = self.pyramid.class(bsdf.frame.side());
+        let side = bsdf.frame.side();
+        let class = self.pyramid.class(side);
         let mut radiance = Rgb::BLACK;
         if bsdf.has(lobes.and(LobeSet::DIFFUSE)) {
             let irradiance = self.pyramid.irradiance(surface.p, class, level);
             radiance += bsdf.diffuse_albedo() * irradiance * std::f32::consts::FRAC_1_PI;
+        }
+        if bsdf.has(lobes.and(LobeSet::TRANSLUCENT)) {
+            let irradiance = self.pyramid.irradiance(surface.p, self.pyramid.class(side.other()), level);
+            radiance += bsdf.albedo(LobeSet::TRANSLUCENT) * irradiance * std::f32::consts::FRAC_1_PI;
         }
         if bsdf.has(LobeSet::ROUGH) {
             let tint = surface.bsdf.specular_tint();

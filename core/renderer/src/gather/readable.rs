@@ -19,11 +19,11 @@ pub(super) struct Readable<P> {
 }
 
 impl<E: Estimator> Gatherer<'_, E> {
-    /// What to read for a hit on a constant Lambert surface; `None` where there is more to it than a look-up. `solid_angle`
+    /// What to read for a hit on a constant Lambert surface; `None` where there is more to it than a look-up, or it moves. `solid_angle`
     /// is what the ray stands for.
     #[inline(always)]
     pub(super) fn readable(&self, ray: &Ray, hit: &Hit, solid_angle: f32) -> Option<Readable<E::Place>> {
-        if self.lit.accel.is_lamp(hit.object) {
+        if self.lit.accel.is_lamp(hit.object) || self.lit.moves(hit.object) {
             return None;
         }
         let (ng, material) = self.lit.accel.triangle(hit.object, hit.primitive);
@@ -41,7 +41,7 @@ impl<E: Estimator> Gatherer<'_, E> {
         hit: &Hit,
         solid_angle: f32,
     ) -> Option<Readable<E::Place>> {
-        if self.lit.accel.is_lamp(hit.object) {
+        if self.lit.accel.is_lamp(hit.object) || self.lit.moves(hit.object) {
             return None;
         }
         let (ng, material) = self.lit.accel.triangle(hit.object, hit.primitive);

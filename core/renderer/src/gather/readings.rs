@@ -10,7 +10,7 @@ use crate::bsdf::{LobeSet, TransportMode};
 use crate::lit_scene::{LitScene, Surface, ray_kind};
 use crate::pyramid::Reading;
 use crate::sampling::{Rng, hash};
-use crate::scene::visibility;
+use crate::scene::{MIDDLE, visibility};
 
 /// Where the camera and gather rays, `rays` per pixel, see surface, and how fine the cells there should be: a pilot.
 #[must_use]
@@ -25,7 +25,7 @@ pub fn readings(lit: &LitScene<'_>, rays: u32, seed: u32) -> Vec<Reading> {
         // The whole frame, so that a border crops the picture and changes nothing in it.
         let at = DVec2::new(f64::from(i % EDGE), f64::from(i / EDGE)) + 0.5;
         let position = at / f64::from(EDGE) * frame;
-        let ray = camera_ray(camera, lit, position, None).ray;
+        let ray = camera_ray(camera, lit, position, None, MIDDLE).ray;
         let mut readings = Vec::new();
         if let Some(surface) = first_scatterer(lit, ray, MAX_DEPTH, &mut rng) {
             readings.push(Reading { p: surface.p, cell_size: f32::INFINITY });
@@ -33,7 +33,7 @@ pub fn readings(lit: &LitScene<'_>, rays: u32, seed: u32) -> Vec<Reading> {
                 let sample =
                     surface.bsdf.sample(rng.draw(), rng.draw2(), LobeSet::ALL, TransportMode::Radiance);
                 let Some(sample) = sample else { continue };
-                let ray = Ray::leaving(surface.p, surface.ng, sample.wi, ray_kind(&sample));
+                let ray = surface.leaving(sample.wi, ray_kind(&sample));
                 let solid_angle = (1.0 / (rays as f32 * sample.pdf_solid_angle)).min(widest_stratum(rays));
                 readings.extend(first_scatterer(lit, ray, MAX_DEPTH, &mut rng).map(|seen| Reading {
                     p: seen.p,
@@ -58,13 +58,13 @@ pub(super) fn first_scatterer<'a>(
         let hit = lit.accel.intersect(&ray)?;
         let surface = lit.surface(&ray, hit, 0.0);
         if rng.draw() < surface.bsdf.transparency.mean() {
-            ray = Ray::leaving(surface.p, surface.ng, ray.direction, ray.mask);
+            ray = surface.leaving(ray.direction, ray.mask);
         } else if surface.bsdf.has(LobeSet::NON_DELTA) {
             return Some(surface);
         } else {
             let sample =
                 surface.bsdf.sample(rng.draw(), rng.draw2(), LobeSet::ALL, TransportMode::Radiance)?;
-            ray = Ray::leaving(surface.p, surface.ng, sample.wi, ray_kind(&sample));
+            ray = surface.leaving(sample.wi, ray_kind(&sample));
         }
     }
     None

@@ -24,7 +24,7 @@ pub(super) struct GatherRay {
     pub(super) weight: Rgb,
     /// Density per solid angle; `None` for mirrors and glass.
     pub(super) pdf: Option<f32>,
-    /// Kind of the ray, a bit of [`visibility`].
+    /// Kind of the ray, bits of [`visibility`].
     pub(super) kind: u32,
     /// From a lobe too sharp for what it meets to be read from the pyramid.
     pub(super) sharp: bool,
@@ -47,7 +47,7 @@ impl Vertex<'_> {
         sampling: GatherSampling,
     ) -> Option<(GatherRay, Vec3)> {
         let bsdf = &self.surface.bsdf;
-        if sampling == GatherSampling::Uniform && !bsdf.has(LobeSet::SHARP | LobeSet::DELTA) {
+        if sampling == GatherSampling::Uniform && !bsdf.has(LobeSet::FOLLOWED | LobeSet::TRANSLUCENT) {
             let direction = Frame::new(bsdf.frame.ns).from_local(uniform_hemisphere(u));
             let f = bsdf.eval(direction, LobeSet::ALL, TransportMode::Radiance);
             let weight = f * (direction.dot(bsdf.frame.ns).abs() / UNIFORM_HEMISPHERE_PDF);

@@ -28,6 +28,15 @@ impl Lights {
         mesh.triangle(which).pdf(wi, t) * self.choice_probability(&from.into(), emitter)
     }
 
+    /// Probability with which [`Lights::sample_direct`] from `from` chooses triangle `primitive` of `object`.
+    #[must_use]
+    pub fn emitter_choice(&self, from: Receiver, object: u32, primitive: u32) -> f32 {
+        let Some(index) = self.light_of_object.get(object as usize).copied().flatten() else { return 0.0 };
+        let Shape::Mesh(mesh) = &self.lights[index].shape else { return 0.0 };
+        let which = mesh.which(primitive);
+        which.map_or(0.0, |which| self.choice_probability(&from, self.first_emitter[index] + which))
+    }
+
     /// Calls back, for each lamp the ray meets at a distance in `span`, with its radiance and the pdf per solid angle
     /// with which [`Lights::sample_direct`] from `from` finds this direction. Lamps do not block. Those hidden from the
     /// ray's kind are skipped, as are suns and what `is_delta` stands for.

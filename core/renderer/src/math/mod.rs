@@ -52,6 +52,12 @@ impl Side {
         Self { normal: ng * if back { -1.0 } else { 1.0 }, back }
     }
 
+    /// The other side of the same surface.
+    #[must_use]
+    pub fn other(self) -> Self {
+        Self { normal: -self.normal, back: !self.back }
+    }
+
     /// Front and back of a triangle with the unit normal `ng`.
     #[must_use]
     pub fn both(ng: Vec3) -> [Self; 2] {

@@ -6,6 +6,7 @@
 //! the next, and are kept where they then land on anything else. Roulette is unbiased; depth is cut only as a safeguard.
 
 mod deposit;
+mod pilot;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -23,9 +24,10 @@ use crate::lit_scene::{LitScene, lobes_lit, ray_kind};
 use crate::progress::Progress;
 use crate::pyramid::SETS;
 use crate::sampling::PhotonSampler;
-use crate::scene::visibility;
+use crate::scene::{MIDDLE, visibility};
 
 pub use deposit::PyramidDeposits;
+pub use pilot::PhotonPilot;
 
 /// Photons of one task: long enough to hide scheduling, short enough to cancel at once.
 const BATCH: u64 = 4096;
@@ -142,21 +144,23 @@ struct Tracer<'a, S> {
 impl<S: PhotonSink> Tracer<'_, S> {
     /// Follows one photon from its lamp; gives the number of segments traced.
     fn photon(&self, mut sampler: PhotonSampler, landed: &mut S::Batch, meter: &mut Meter) -> u64 {
+        let (lit, shutter) = (self.lit, &self.lit.accel.scene().camera.shutter);
+        let time = if lit.plan.motion_blur { shutter.time(sampler.time()) } else { MIDDLE };
         let emission = match self.carry {
-            Carry::All => self.lit.emit(std::array::from_fn(|_| sampler.draw())),
-            Carry::Caustics => self.lit.emit_to_casters(std::array::from_fn(|_| sampler.draw())),
+            Carry::All => lit.emit(std::array::from_fn(|_| sampler.draw()), time),
+            Carry::Caustics => lit.emit_to_casters(std::array::from_fn(|_| sampler.draw()), time),
         };
         let Some(emission) = emission else { return 0 };
         let flux = emission.flux * self.share;
         let leaving = match emission.normal {
             Some(normal) => {
-                Ray::leaving(emission.origin, normal, emission.direction, visibility::DIFFUSE).origin
+                Ray::leaving(emission.origin, normal, emission.direction, visibility::DIFFUSE, time).origin
             }
             None => emission.origin,
         };
         // On its first way a photon is a shadow ray the other way round.
         let mask = visibility::DIFFUSE | visibility::SHADOW;
-        let (mut ray, mut travelled) = self.lit.entering(leaving.as_dvec3(), emission.direction, mask);
+        let (mut ray, mut travelled) = self.lit.entering(leaving.as_dvec3(), emission.direction, mask, time);
         let lobes = lobes_lit(emission.visibility);
         let mut segments = 0;
         for _ in 0..MAX_PASSED_THROUGH {
@@ -171,8 +175,8 @@ impl<S: PhotonSink> Tracer<'_, S> {
             if emission.casts_shadow && visible_to & visibility::SHADOW != 0 {
                 break;
             }
-            let ng = self.lit.accel.geometric_normal(hit.object, hit.primitive);
-            ray = Ray::leaving(ray.origin + ray.direction * hit.t, ng, ray.direction, mask);
+            let ng = self.lit.normal_met(&ray, &hit);
+            ray = Ray::leaving(ray.origin + ray.direction * hit.t, ng, ray.direction, mask, time);
         }
         segments
     }
@@ -194,8 +198,11 @@ impl<S: PhotonSink> Tracer<'_, S> {
                 let glossy = self.carry == Carry::All && bsdf.has(lobes.and(LobeSet::ROUGH));
                 let at = if glossy { [sampler.draw(), sampler.draw()] } else { [0.0; 2] };
                 let glossy = glossy && self.lit.plan.direction_bins();
-                let flux = flux * bsdf.frame.irradiance_factor(-ray.direction);
-                let landing = Landing { surface: &surface, set: self.set, flux, glossy, at };
+                let at_rest = self.lit.moves(hit.object).then(|| self.lit.at_rest(&surface));
+                let (stored, grown) =
+                    at_rest.as_ref().map_or((&surface, 1.0), |(at_rest, grown)| (at_rest, *grown));
+                let flux = flux * (bsdf.frame.irradiance_factor(-ray.direction) * grown);
+                let landing = Landing { surface: stored, set: self.set, flux, glossy, at };
                 let owner = meter.enter_if(glossy.then_some(Effect::IndirectGlossy));
                 self.sink.land(landed, &landing);
                 meter.back(owner);
@@ -212,7 +219,7 @@ impl<S: PhotonSink> Tracer<'_, S> {
                 break;
             }
             flux = flux * next.weight * (1.0 / survival);
-            ray = Ray::leaving(surface.p, surface.ng, next.direction, next.kind);
+            ray = surface.leaving(next.direction, next.kind);
             if !next.straight {
                 (lobes, thrown) = (LobeSet::ALL, true);
             }

@@ -114,7 +114,7 @@ impl<'a> Accumulator<'a> {
     pub fn deposit_glossy(&self, landing: Landing, at: [f32; 2], leaving: &impl Leaving) {
         let groups = self.corners.groups();
         let (level, place) = self.layout.unrefined(landing.level, landing.place);
-        let frame = Frame::new(self.layout.levels[level].surfaces[place].mean_normal());
+        let frame = Frame::new(self.layout.bins_normal(level, place));
         let per_quantum = self.per_quantum / COARSER;
         let Some(sums) = self.glossy.get(level).and_then(|cells| cells.get(place)) else { return };
         let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
@@ -158,13 +158,10 @@ impl<'a> Accumulator<'a> {
     #[must_use]
     pub fn bytes_for(layout: &Layout, bins: Option<DirectionBins>) -> usize {
         let cell = 2 * (size_of::<[[i64; 3]; SETS]>() + size_of::<u32>());
-        let cells: usize = layout.levels.iter().map(|level| level.index.len()).sum();
+        let cells = layout.cell_count();
         let Some(bins) = bins else { return cells * cell };
         let bin_sums = SETS * bins.count().div_ceil(LANES) * size_of::<[[i64; LANES]; 3]>();
-        let with_bins = &layout.levels[..=layout.grid.base()];
-        let surfaces = with_bins.iter().flat_map(|level| &level.surfaces);
-        let glossy = surfaces.filter(|surface| surface.glossy_area > 0).count();
-        cells * (cell + size_of::<Mutex<GlossySums>>()) + glossy * 2 * bin_sums
+        cells * (cell + size_of::<Mutex<GlossySums>>()) + layout.glossy_cell_count() * 2 * bin_sums
     }
 
     /// Memory (bytes).

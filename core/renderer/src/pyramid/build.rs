@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use glam::Vec3;
 use rayon::prelude::*;
 
 use super::accumulator::{Accumulator, CellSum, SETS, Sums};
@@ -12,7 +11,8 @@ use super::grid::{Grid, Vote};
 use super::index::{CellKey, LevelIndex};
 use super::layout::Layout;
 use super::mixed::mixed_cells;
-use super::{Cell, Level, Pyramid};
+use super::surfaces::Surfaces;
+use super::{Cell, Level, Pyramid, Surroundings};
 use crate::color::Rgb;
 use crate::math::Frame;
 
@@ -20,30 +20,35 @@ use crate::math::Frame;
 const SLIVER: f64 = 0.1;
 
 impl Pyramid {
+    /// Photons that a cell has to hold for its children to be read.
+    #[must_use]
+    pub const fn photons_to_divide(photons_per_cell: u32) -> u32 {
+        4 * photons_per_cell
+    }
+
     /// Merges the levels and settles which cells are read from their parents: those whose *parent* holds fewer than
-    /// `4 × photons_per_cell` photons (a rule on the cell's own count would brighten the picture), and slivers. `visible`
-    /// tells whether two points see each other: cells whose parts do not are read from finer ones. `None` once
-    /// `keep_going` says no.
+    /// `4 × photons_per_cell` photons (a rule on the cell's own count would brighten the picture), and slivers. Cells
+    /// whose parts do not see each other are read from finer ones. `None` when cancelled.
     #[must_use]
     pub fn build(
         accumulator: Accumulator<'_>,
         layout: &Layout,
         photons_per_cell: u32,
-        visible: impl Fn(Vec3, Vec3) -> bool + Sync,
-        keep_going: impl Fn() -> bool,
+        scene: &impl Surroundings,
     ) -> Option<Self> {
         let mut sums = accumulator.into_sums();
-        merge(layout, &mut sums.cells);
+        let surfaces = Surfaces::measure(layout, &sums.cells, scene)?;
+        merge(&surfaces, &mut sums.cells);
         let clock = Instant::now();
-        merge_bins(layout, &mut sums);
+        merge_bins(layout, &surfaces, &mut sums);
         let mut bins_time = clock.elapsed();
-        let mixed = mixed_cells(layout, &sums.cells, &visible);
-        let enough = 4 * u64::from(photons_per_cell);
+        let mixed = mixed_cells(layout, &surfaces, &sums.cells, scene);
+        let enough = Self::photons_to_divide(photons_per_cell).into();
         let grid = pruned_grid(layout, &sums, &mixed, enough);
         let mut store = BinStore::new(sums.bins);
         let mut levels: Vec<Level> = Vec::with_capacity(layout.levels.len());
         for (number, mixed) in mixed.iter().enumerate() {
-            if !keep_going() {
+            if !scene.keep_going() {
                 return None;
             }
             let key = |place: usize| layout.levels[number].keys[place].cell(&layout.grid.levels[number]);
@@ -55,10 +60,10 @@ impl Pyramid {
             };
             // Where the parent's light is read.
             let read_above = |place: usize| {
-                parent(place).filter(|[parent, _]| reads_parent(parent, layout, number, place))
+                parent(place).filter(|[parent, _]| reads_parent(parent, &surfaces, number, place))
             };
             let clock = Instant::now();
-            let glossy = push_bins(layout, number, &sums, &mut store, |place| read_above(place).is_none());
+            let glossy = push_bins(&surfaces, number, &sums, &mut store, |place| read_above(place).is_none());
             bins_time += clock.elapsed();
             let settle = |place: usize| -> [Cell; SETS] {
                 let is_divided = grid.is_divided(number, layout.grid.levels[number].lattice(key(place).0));
@@ -74,7 +79,7 @@ impl Pyramid {
                     };
                     let irradiance = match parent.filter(|_| read_above) {
                         Some(parent) => parent.irradiance(),
-                        None => own_irradiance(layout, number, place, &sums, set),
+                        None => own_irradiance(&surfaces, number, place, &sums, set),
                     };
                     Cell::new(irradiance, glossy).with(enough, mixed[place])
                 })
@@ -115,45 +120,45 @@ fn pruned_grid(layout: &Layout, sums: &Sums, mixed: &[Vec<bool>], enough: u64) -
 }
 
 /// Irradiance of a cell from its own photons of one set.
-fn own_irradiance(layout: &Layout, number: usize, place: usize, sums: &Sums, set: usize) -> Rgb {
-    let area = layout.levels[number].surfaces[place].area as f64 * layout.area_unit;
+fn own_irradiance(surfaces: &Surfaces<'_>, number: usize, place: usize, sums: &Sums, set: usize) -> Rgb {
+    let area = surfaces.area(number, place);
     let flux = sums.cells[number][place].flux[set];
     Rgb(flux.map(|flux| (flux as f64 * sums.quantum / area) as f32))
 }
 
 /// Whether a cell's parent is read in its place: where the photons are too few to tell, or the cell is a sliver of
 /// something that is no mixture.
-fn reads_parent(parent: &Cell, layout: &Layout, number: usize, place: usize) -> bool {
-    let area = layout.levels[number].surfaces[place].area as f64 * layout.area_unit;
-    let sliver = area < SLIVER * f64::from(layout.grid.levels[number].cell_size).powi(2);
+fn reads_parent(parent: &Cell, surfaces: &Surfaces<'_>, number: usize, place: usize) -> bool {
+    let area = surfaces.area(number, place);
+    let sliver = area < SLIVER * f64::from(surfaces.layout.grid.levels[number].cell_size).powi(2);
     !parent.holds_enough() || (sliver && !parent.is_mixed())
 }
 
 /// Puts the bins of a level's glossy cells into the store, of those that are read; gives their numbers by place.
 fn push_bins(
-    layout: &Layout,
+    surfaces: &Surfaces<'_>,
     number: usize,
     sums: &Sums,
     store: &mut BinStore,
     is_read: impl Fn(usize) -> bool,
 ) -> BTreeMap<usize, u32> {
-    let surfaces = &layout.levels[number].surfaces;
+    let layout = surfaces.layout;
     let cells = sums.glossy.get(number).into_iter().flatten().filter(|(place, _)| is_read(**place));
     cells
         .map(|(&place, bins)| {
-            let area = surfaces[place].glossy_area.max(1) as f64 * layout.area_unit;
+            let area = surfaces.levels[number].surfaces[place].glossy_area.max(1) as f64 * layout.area_unit();
             let sets = std::array::from_fn(|set| &bins[set * sums.bins.count()..][..sums.bins.count()]);
-            (place, store.push(surfaces[place].mean_normal(), sets, sums.bin_quantum / area))
+            (place, store.push(layout.bins_normal(number, place), sets, sums.bin_quantum / area))
         })
         .collect()
 }
 
 /// Adds every cell to its parent, from the finest level up, but for what is hidden in a parent that is not.
-fn merge(layout: &Layout, cells: &mut [Vec<CellSum>]) {
-    for level in (1..layout.levels.len()).rev() {
+fn merge(surfaces: &Surfaces<'_>, cells: &mut [Vec<CellSum>]) {
+    for level in (1..cells.len()).rev() {
         let (coarser, finer) = cells.split_at_mut(level);
         for (place, sum) in finer[0].iter().enumerate().filter(|(_, sum)| sum.count > 0) {
-            if let Some(parent) = layout.counting_parent(level, place) {
+            if let Some(parent) = surfaces.counting_parent(level, place) {
                 coarser[level - 1][parent].add(sum);
             }
         }
@@ -161,12 +166,12 @@ fn merge(layout: &Layout, cells: &mut [Vec<CellSum>]) {
 }
 
 /// Adds the bins of every glossy cell to its parent's, from the finest level up.
-fn merge_bins(layout: &Layout, sums: &mut Sums) {
-    let frame = |level: usize, place: usize| Frame::new(layout.levels[level].surfaces[place].mean_normal());
+fn merge_bins(layout: &Layout, surfaces: &Surfaces<'_>, sums: &mut Sums) {
+    let frame = |level: usize, place: usize| Frame::new(layout.bins_normal(level, place));
     for level in (1..sums.glossy.len()).rev() {
         let (coarser, finer) = sums.glossy.split_at_mut(level);
         for (&place, values) in &finer[0] {
-            if let Some(parent) = layout.counting_parent(level, place) {
+            if let Some(parent) = surfaces.counting_parent(level, place) {
                 let count = sums.bins.count();
                 let total = coarser[level - 1].entry(parent).or_insert_with(|| vec![[0; 3]; SETS * count]);
                 for (values, total) in values.chunks(count).zip(total.chunks_mut(count)) {

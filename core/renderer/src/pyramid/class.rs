@@ -24,6 +24,12 @@ const SNAP: f32 = 1e-3;
 pub(super) const BACKS: usize = 64;
 
 impl NormalClasses {
+    /// As the setting has it: "54", or else "6".
+    #[must_use]
+    pub fn of_setting(setting: &str) -> Self {
+        if setting == "54" { Self::FiftyFour } else { Self::Six }
+    }
+
     /// Class of a side of a surface: its direction, and for backs [`BACKS`] more.
     #[must_use]
     #[inline(always)]

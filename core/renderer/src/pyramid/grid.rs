@@ -67,6 +67,17 @@ pub struct Reading {
     pub cell_size: f32,
 }
 
+/// Where photons of a pilot landed.
+#[derive(Clone, Debug, Default)]
+pub struct PilotLandings {
+    /// Where, in scene space.
+    pub places: Vec<Vec3>,
+    /// How many photons of the photon pass each stands for.
+    pub each: f64,
+    /// Photons that a cell has to hold for its children to be read.
+    pub enough: f64,
+}
+
 /// What a cell has to say about reading its children.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Vote {
@@ -92,6 +103,9 @@ const MOST_RESOLUTION: u32 = 2048;
 
 /// Readings of a pilot that a block needs for a level of its own.
 const LEAST_READINGS: u32 = 2;
+
+/// Cells of a block that share its photons: those that a plane across it meets.
+const LEAST_LIT: f64 = 16.0;
 
 /// Walls modelled at round coordinates must not lie on a border between cells; part of a finest cell.
 const ANCHOR_OFFSET: f64 = 0.381_966;
@@ -133,8 +147,9 @@ impl Grid {
         Self { origin: origin.as_vec3(), origin_f64: origin, levels, base, refinements }
     }
 
-    /// Adds finer levels in the blocks that `readings` ask for it: so many levels as a few of them want there.
-    pub fn refine(&mut self, readings: &[Reading], most: u32) {
+    /// Adds finer levels in the blocks that `readings` ask for it: so many levels as a few of them want there, and `landings`
+    /// promise photons for.
+    pub fn refine(&mut self, readings: &[Reading], landings: &PilotLandings, most: u32) {
         let base = self.levels[self.base];
         let resolution = base.size.max_element() as u32;
         let most = most.min((MOST_RESOLUTION / resolution.max(1)).checked_ilog2().unwrap_or(0)) as usize;
@@ -147,8 +162,19 @@ impl Grid {
                 *count += 1;
             }
         }
-        for (refinements, wanted) in self.refinements.iter_mut().zip(wanted.chunks(most.max(1))) {
-            *refinements = wanted.iter().take_while(|&&count| count >= LEAST_READINGS).count() as u8;
+        let mut landed = vec![0_u32; self.refinements.len()];
+        for &p in &landings.places {
+            if let Some(cell) = base.cell(self.offset(p)) {
+                landed[self.block(cell)] += 1;
+            }
+        }
+        let blocks = wanted.chunks(most.max(1)).zip(landed);
+        for (refinements, (wanted, landed)) in self.refinements.iter_mut().zip(blocks) {
+            let photons = f64::from(landed) * landings.each;
+            let cells = (0..).map(|deeper| LEAST_LIT * 4.0_f64.powi(deeper));
+            let is_worth =
+                |(&count, cells): (&u32, f64)| count >= LEAST_READINGS && photons >= landings.enough * cells;
+            *refinements = wanted.iter().zip(cells).take_while(|&each| is_worth(each)).count() as u8;
         }
         for _ in 0..self.refinements.iter().copied().max().unwrap_or(0) {
             let LevelBox { cell_size, inverse_cell_size, low, size } = self.levels[self.finest()];
@@ -303,6 +329,12 @@ mod tests {
         )
     }
 
+    /// Photons aplenty at the readings.
+    fn landings(readings: &[Reading]) -> PilotLandings {
+        let places = readings.iter().map(|reading| reading.p).collect();
+        PilotLandings { places, each: 1e6, enough: 16.0 }
+    }
+
     #[test]
     fn boxes_nest_and_cover() {
         let grid = grid();
@@ -356,7 +388,7 @@ mod tests {
             reading(Vec3::splat(0.49), 100.0),
             reading(Vec3::splat(0.49), 100.0),
         ];
-        grid.refine(&readings, 2);
+        grid.refine(&readings, &landings(&readings), 2);
         assert_eq!(grid.finest(), base + 2);
         let finest = grid.finest();
         let located = |p: Vec3| grid.locate(grid.offset(p), finest).expect("inside");
@@ -380,7 +412,7 @@ mod tests {
         let mut grid = grid();
         let base = grid.finest();
         let readings = [a, a, b, b, c, c].map(|p| Reading { p, cell_size: 0.0 });
-        grid.refine(&readings, 2);
+        grid.refine(&readings, &landings(&readings), 2);
         let at = |level: usize, p: Vec3| (level, grid.levels[level].cell(grid.offset(p)).expect("inside"));
         let votes = [
             (at(base, a), Vote::For),
@@ -397,5 +429,20 @@ mod tests {
         grid.prune(votes.into_iter());
         let depth = |p: Vec3| grid.locate(grid.offset(p), grid.finest()).expect("inside").0 - base;
         assert_eq!([a, b, c].map(depth), [1, 0, 2]);
+    }
+
+    /// A block of sixteen cells across a plane needs sixteen times what one cell has to hold, and four times as many for each
+    /// finer level.
+    #[test]
+    fn nothing_is_refined_without_photons() {
+        let p = Vec3::new(0.0112, 0.0032, 0.0052);
+        let readings = vec![Reading { p, cell_size: 1e-5 }; 2];
+        for (photons, levels) in [(0.0, 0), (250.0, 0), (260.0, 1), (1020.0, 1), (1030.0, 2), (1e9, 2)] {
+            let mut grid = grid();
+            let base = grid.base();
+            let landings = PilotLandings { places: vec![p; 2], each: photons / 2.0, enough: 16.0 };
+            grid.refine(&readings, &landings, 2);
+            assert_eq!(grid.existing(grid.offset(p), base + 2) - base, levels, "{photons} photons");
+        }
     }
 }

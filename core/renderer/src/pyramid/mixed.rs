@@ -9,48 +9,48 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::Surroundings;
 use super::accumulator::CellSum;
 use super::layout::Layout;
+use super::surfaces::Surfaces;
 
 /// Visibility rays start this far above the surface (cells): above its own curvature, below what stands on it.
 const LIFT: f32 = 0.25;
 
-/// By level, by place: whether the cell is mixed. `visible` tells whether two points see each other; only cells that hold
-/// light are asked about.
+/// By level, by place: whether the cell is mixed. Only cells that hold light are asked about.
 pub(super) fn mixed_cells(
     layout: &Layout,
+    surfaces: &Surfaces<'_>,
     sums: &[Vec<CellSum>],
-    visible: &(impl Fn(Vec3, Vec3) -> bool + Sync),
+    scene: &impl Surroundings,
 ) -> Vec<Vec<bool>> {
     let finest = layout.levels.len() - 1;
-    let own = |level: usize, place: usize| layout.levels[level].surfaces[place].centroid();
+    let own = |level: usize, place: usize| surfaces.levels[level].surfaces[place].centroid();
     let mut points: Vec<Vec3> =
         (0..layout.levels[finest].keys.len()).map(|place| own(finest, place)).collect();
     let mut mixed: Vec<Vec<bool>> = layout.levels.iter().map(|level| vec![false; level.keys.len()]).collect();
     for level in (1..=finest).rev() {
-        let cells = &layout.levels[level];
-        let parents: Vec<Option<usize>> =
-            (0..cells.keys.len()).map(|place| layout.parent(level, place)).collect();
+        let (cells, surfaces) = (0..layout.levels[level].keys.len(), &surfaces.levels[level].surfaces);
         // A cell is represented by the largest of its parts, so that its point lies on a surface.
         let mut largest: Vec<Option<usize>> = vec![None; layout.levels[level - 1].keys.len()];
-        for (place, parent) in parents.iter().enumerate() {
-            let Some(parent) = *parent else { continue };
-            let area = |place: usize| cells.surfaces[place].area;
+        for place in cells.clone() {
+            let Some(parent) = layout.parent(level, place) else { continue };
+            let area = |place: usize| surfaces[place].area;
             if largest[parent].is_none_or(|other| area(place) > area(other)) {
                 largest[parent] = Some(place);
             }
         }
         let lift = LIFT * layout.grid.levels[level].cell_size;
         let lifted =
-            |place: usize| layout.grid.position(points[place] + cells.surfaces[place].mean_normal() * lift);
+            |place: usize| layout.grid.position(points[place] + surfaces[place].mean_normal() * lift);
         let flags: Vec<AtomicBool> = largest.iter().map(|_| AtomicBool::new(false)).collect();
-        parents.par_iter().enumerate().for_each(|(place, parent)| {
-            let Some(parent) = *parent else { return };
+        cells.into_par_iter().for_each(|place| {
+            let Some(parent) = layout.parent(level, place) else { return };
             if sums[level - 1][parent].count == 0 || flags[parent].load(Ordering::Relaxed) {
                 return;
             }
             let Some(largest) = largest[parent] else { return };
-            if mixed[level][place] || (place != largest && !visible(lifted(place), lifted(largest))) {
+            if mixed[level][place] || (place != largest && !scene.sees(lifted(place), lifted(largest))) {
                 flags[parent].store(true, Ordering::Relaxed);
             }
         });

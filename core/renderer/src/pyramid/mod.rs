@@ -5,12 +5,13 @@
 //! halves the cells.
 //!
 //! ```text
-//!   Layout       surfaces -> which cells exist, their area     (measure, clip, index)
-//!   Accumulator  photons  -> flux and count of each cell       (exact integer sums)
-//!   Pyramid      merge    -> irradiance of each cell, read by  lookup(point, class, footprint)
+//!   Layout       triangles -> which cells exist                 (measure, clip, index)
+//!   Accumulator  photons   -> flux and count of each cell       (exact integer sums)
+//!   Surfaces     triangles -> how much surface of a cell counts (measure, clip)
+//!   Pyramid      merge     -> irradiance of each cell, read by  lookup(point, class, footprint)
 //! ```
 //!
-//! The pyramid knows no photon, BSDF, light or scene: it takes deposits and answers look-ups.
+//! The pyramid knows no photon, BSDF or light, and of the scene its [`Surroundings`]: it takes deposits and answers look-ups.
 //!
 //! After Yue, Iwasaki, Nishita, "Radiance Grid Pyramid"; what differs: irradiance instead of radiance per direction for
 //! diffuse surfaces, true area instead of the cell's face, level chosen by the parent's photon count.
@@ -18,6 +19,7 @@
 mod accumulator;
 mod bins;
 mod build;
+mod cell_id;
 mod class;
 mod clip;
 mod grid;
@@ -26,22 +28,64 @@ mod layout;
 mod lookup;
 mod measure;
 mod mixed;
+mod surfaces;
 
 use std::time::Duration;
 
-use glam::{IVec3, Vec3};
+use glam::{DVec3, IVec3, Vec3};
 
 pub use accumulator::{Accumulator, Landing, Leaving, SETS};
 pub use bins::{DirectionBins, Lanes};
+pub use cell_id::CellId;
 pub use class::NormalClasses;
-pub use grid::{Grid, Reading};
-pub use layout::{Layout, SidePoint, SurfaceTriangle};
+pub use grid::{Grid, PilotLandings, Reading};
+pub use layout::Layout;
 pub use lookup::{Place, View};
 
 use crate::color::Rgb;
 use crate::math::Side;
 use bins::BinStore;
 use index::LevelIndex;
+
+/// One triangle as the pyramid sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceTriangle {
+    /// Corners in scene space.
+    pub corners: [DVec3; 3],
+    /// Unit normal: where the front looks.
+    pub normal: Vec3,
+    /// True when the light leaving it is needed by direction.
+    pub glossy: bool,
+}
+
+/// A point on one side of a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct SidePoint {
+    /// Where, in scene space.
+    pub p: Vec3,
+    /// Which side.
+    pub side: Side,
+    /// Edge of its cell, or of the finest cells that are everywhere, if those are larger (scene units).
+    pub cell_size: f32,
+}
+
+/// What a pyramid is made around.
+pub trait Surroundings: Sync {
+    /// Number of triangles whose light is read.
+    fn triangle_count(&self) -> usize;
+
+    /// One of them.
+    fn triangle(&self, i: usize) -> SurfaceTriangle;
+
+    /// Tells of points, in order, whether light can come to them.
+    fn open(&self, points: &[SidePoint]) -> Vec<bool>;
+
+    /// Whether two points see each other.
+    fn sees(&self, p: Vec3, q: Vec3) -> bool;
+
+    /// False once the work is cancelled.
+    fn keep_going(&self) -> bool;
+}
 
 /// Light of one cell and normal class.
 #[derive(Clone, Copy, Debug, Default)]

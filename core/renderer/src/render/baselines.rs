@@ -8,10 +8,10 @@ use std::time::Instant;
 use glam::Vec3;
 
 use crate::baseline::{
-    Path, PhotonMap, PhotonStore, Photons, PrecomputedIrradiance, Pyramid2006, ReversePhotonMap, UniformGrid,
+    PhotonMap, PhotonStore, Photons, PrecomputedIrradiance, Pyramid2006, ReversePhotonMap, UniformGrid,
 };
 use crate::error::RenderError;
-use crate::estimator::Estimator;
+use crate::estimator::{Estimator, Path};
 use crate::progress::Stage;
 use crate::pyramid::SETS;
 use crate::settings::parse_bins;
@@ -57,7 +57,7 @@ impl Work<'_> {
     /// No photons and no structure.
     pub(super) fn path(&self, stats: &mut Stats) -> Outcome {
         stats.estimator.name = "path";
-        self.gather([&Path; SETS], stats)
+        self.gather([&Path; SETS], None, stats)
     }
 
     /// Photons, the structure that `build` makes of them, and the picture from it.
@@ -77,7 +77,7 @@ impl Work<'_> {
         drop(photons);
         stats.estimator.seconds = clock.elapsed().as_secs_f64();
         self.progress.check()?;
-        let gathered = self.gather([&estimator; SETS], stats);
+        let gathered = self.gather([&estimator; SETS], None, stats);
         stats.estimator.bytes = bytes(&estimator);
         let indirect = &mut stats.effects[self.lit.plan.indirect_owner() as usize];
         indirect.seconds += stats.estimator.seconds;

@@ -36,9 +36,15 @@ impl Budget {
         let (mut triangles, mut instances) = (0, 0);
         for object in &scene.objects {
             let count = object.mesh.triangles.len() as u64;
-            if object.scene_from_mesh.is_some() { instances += 1 } else { triangles += count }
+            if object.scene_from_mesh.is_some() {
+                instances += 1;
+            }
+            if object.scene_from_mesh.is_none() || object.moves() {
+                triangles += count;
+            }
         }
-        let tree = triangles * TRACED_TRIANGLE + instances * TRACED_INSTANCE;
+        let steps = scene.motion_bytes() as u64;
+        let tree = triangles * TRACED_TRIANGLE + instances * TRACED_INSTANCE + steps;
         let refuse = |what: String, bytes: u64, help: &str| {
             let (needs, limit) = (bytes.div_ceil(MEBIBYTE), settings.render.memory_limit);
             let message = format!("{what} would take {needs} MiB of memory, of {limit} MiB allowed; {help}");

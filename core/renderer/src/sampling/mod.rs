@@ -8,7 +8,7 @@ mod warp;
 
 pub use photon::PhotonSampler;
 pub use rng::{Rng, hash};
-pub use stratified::{LANES, PixelSeeds, StratifiedSet, shuffled_point};
+pub use stratified::{LANES, PixelSeeds, StratifiedSet, shuffled_point, shuffled_points};
 pub use warp::{UNIFORM_HEMISPHERE_PDF, concentric_disk, cosine_hemisphere, uniform_hemisphere};
 
 /// Power heuristic with exponent 2 (Veach 1997, section 9.2.4): weight of a sample drawn with density `pdf` where `other`

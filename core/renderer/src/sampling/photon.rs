@@ -35,6 +35,15 @@ impl PhotonSampler {
         }
     }
 
+    /// A number in [0, 1) that is no dimension of the sequence: an additive recurrence with the golden ratio over the photons
+    /// of a block.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "24 bits fit a f32 exactly")]
+    pub fn time(&self) -> f32 {
+        let golden = self.index.wrapping_mul(0x9E37_79B9);
+        ((self.seed ^ 0x5bd1_e995).wrapping_add(golden) >> 8) as f32 * (1.0 / 16_777_216.0)
+    }
+
     /// The next number in [0, 1).
     pub fn draw(&mut self) -> f32 {
         let dimension = self.dimension;

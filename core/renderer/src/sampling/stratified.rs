@@ -81,20 +81,33 @@ impl StratifiedSet {
     }
 }
 
-/// Point `index` of a set that is all the seed's own, in [0, 1)²: strata and order too. Points of two such sets, or of one
+/// Point `index` of sets that are all their seed's own, in [0, 1)²: strata and order too. Points of two such sets, or of one
 /// and a [`StratifiedSet`], can be paired by their index: in the sequence's own order both would name the same strata over and
 /// over, and half of all pairs never occur. Aligned runs of 2ᵏ points stay together (Burley 2020, "Practical Hash-based Owen
-/// Scrambling").
+/// Scrambling"). First and second coordinates.
+#[must_use]
+#[inline(always)]
+pub fn shuffled_points<const N: usize>(index: u32, seeds: &[u32; N]) -> [[f32; N]; 2] {
+    let mut out = [[0.0; N]; 2];
+    for (lane, &seed) in seeds.iter().enumerate() {
+        let seeds = [0xA3C5_9AC3, 0x68BC_21EB, 0x02E5_BE93].map(|dimension| mix(seed ^ dimension));
+        let index = scramble(index.reverse_bits(), seeds[0]);
+        out[0][lane] = unit_float(scramble(index, seeds[1]));
+        out[1][lane] = unit_float(scramble(sobol_1_reversed(index), seeds[2]));
+    }
+    out
+}
+
+/// [`shuffled_points`] of one seed.
 #[must_use]
 #[inline(always)]
 pub fn shuffled_point(index: u32, seed: u32) -> [f32; 2] {
-    let seeds = [0xA3C5_9AC3, 0x68BC_21EB, 0x02E5_BE93].map(|dimension| mix(seed ^ dimension));
-    let index = scramble(index.reverse_bits(), seeds[0]);
-    [unit_float(scramble(index, seeds[1])), unit_float(scramble(sobol_1_reversed(index), seeds[2]))]
+    shuffled_points(index, &[seed]).map(|[coordinate]| coordinate)
 }
 
 /// Second dimension of the Sobol' sequence with its bits reversed: Pascal's triangle modulo 2 times the index. Bit k is the
 /// sum of the index's bits whose numbers hold all bits of k, which goes one bit of their numbers at a time.
+#[inline(always)]
 const fn sobol_1_reversed(index: u32) -> u32 {
     let mut x = index;
     x ^= (x & 0xAAAA_AAAA) >> 1;
@@ -105,6 +118,7 @@ const fn sobol_1_reversed(index: u32) -> u32 {
 }
 
 /// Nested uniform scramble of a number given with its bits reversed; the result is in natural order.
+#[inline(always)]
 fn scramble(reversed: u32, seed: u32) -> u32 {
     let mut x = reversed;
     x ^= x.wrapping_mul(0x3d20_adea);
@@ -116,6 +130,7 @@ fn scramble(reversed: u32, seed: u32) -> u32 {
 }
 
 /// Spreads every bit of a seed over all bits (Wellons, lowbias32).
+#[inline(always)]
 fn mix(mut x: u32) -> u32 {
     x ^= x >> 16;
     x = x.wrapping_mul(0x7feb_352d);
@@ -126,6 +141,7 @@ fn mix(mut x: u32) -> u32 {
 
 /// The leading 24 bits as a number in [0, 1).
 #[expect(clippy::cast_precision_loss, reason = "24 bits fit a f32 exactly")]
+#[inline(always)]
 fn unit_float(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / 16_777_216.0)
 }

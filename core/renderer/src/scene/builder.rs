@@ -5,14 +5,13 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat4, DVec3, Vec3};
 
-use super::mesh::{self, MeshArrays};
+use super::equipment::{place_camera, place_lamp};
+use super::mesh::{self, MeshArrays, is_step_count};
 use super::record::{
-    CameraRecord, LampRecord, LampShape, MaterialRecord, ObjectInfo, WorldProgramRecord, WorldRecord, matrix,
-    visibility,
+    CameraRecord, LampRecord, MaterialRecord, ObjectInfo, WorldProgramRecord, WorldRecord, visibility,
 };
 use super::{
-    Camera, Lamp, Lens, Material, MaterialProgram, Mesh, Object, Problem, Projection, Scene, SceneSpace,
-    World, WorldProgram,
+    Lamp, Material, MaterialProgram, Mesh, Object, Problem, Scene, SceneSpace, World, WorldProgram, motion,
 };
 use crate::color::Rgb;
 use crate::error::RenderError;
@@ -23,9 +22,19 @@ struct ObjectRecord {
     name: String,
     mesh: usize,
     world_from_object: DAffine3,
+    /// The same at even times while the shutter is open, the middle left out; empty where it stays the same.
+    steps: Vec<DAffine3>,
     materials: Vec<u32>,
     visibility: u32,
     info: ObjectInfo,
+}
+
+impl ObjectRecord {
+    /// Where it is at even times while the shutter is open; once where it stays.
+    fn placements(&self) -> Vec<DAffine3> {
+        let (before, after) = self.steps.split_at(self.steps.len() / 2);
+        [before, &[self.world_from_object], after].concat()
+    }
 }
 
 /// Takes the parts of a scene in any order.
@@ -75,9 +84,8 @@ impl SceneBuilder {
     ///
     /// # Errors
     /// Arrays whose lengths do not fit together.
-    pub fn add_mesh(&mut self, mut arrays: MeshArrays) -> Result<usize, RenderError> {
+    pub fn add_mesh(&mut self, arrays: MeshArrays) -> Result<usize, RenderError> {
         arrays.check_lengths()?;
-        arrays.drop_bad_triangles(&mut self.problems);
         self.meshes.push(arrays);
         Ok(self.meshes.len() - 1)
     }
@@ -108,6 +116,7 @@ impl SceneBuilder {
             name: name.to_owned(),
             mesh,
             world_from_object: transform,
+            steps: Vec::new(),
             materials,
             visibility: visible_to & (visibility::ALL | visibility::HOLDOUT),
             info: ObjectInfo::default(),
@@ -122,6 +131,41 @@ impl SceneBuilder {
     pub fn set_object_info(&mut self, object: usize, info: ObjectInfo) -> Result<(), RenderError> {
         let known = self.objects.get_mut(object).map(|object| object.info = info);
         known.ok_or_else(|| RenderError::Scene(format!("there is no object {object}")))
+    }
+
+    /// Says where an object is at even times while the shutter is open, the middle left out.
+    ///
+    /// # Errors
+    /// An object that does not exist, or steps that are not two or more, in pairs.
+    pub fn set_object_motion(&mut self, object: usize, steps: &[DMat4]) -> Result<(), RenderError> {
+        let Some(record) = self.objects.get_mut(object).filter(|_| is_step_count(steps.len())) else {
+            return Err(RenderError::Scene(format!("there are no {} steps of object {object}", steps.len())));
+        };
+        record.steps = steps.iter().map(|&step| DAffine3::from_mat4(step)).collect();
+        if !record.steps.iter().all(DAffine3::is_finite) {
+            let what = "it moves to where is no number; its motion is not blurred";
+            self.problems.add(&record.name, what, 1);
+            record.steps.clear();
+        }
+        Ok(())
+    }
+
+    /// Says where the vertices of a mesh are at even times while the shutter is open, the middle left out; `None` is where
+    /// they are in the mesh.
+    ///
+    /// # Errors
+    /// A mesh that does not exist, or steps that do not fit to it.
+    pub fn set_mesh_motion(
+        &mut self,
+        mesh: usize,
+        steps: Vec<Option<Vec<[f32; 3]>>>,
+    ) -> Result<(), RenderError> {
+        let Some(arrays) = self.meshes.get_mut(mesh) else {
+            return Err(RenderError::Scene(format!("there is no mesh {mesh}")));
+        };
+        let positions = |step: Option<_>| step.unwrap_or_else(|| arrays.positions.clone());
+        arrays.steps = steps.into_iter().map(positions).collect();
+        arrays.check_lengths().inspect_err(|_| arrays.steps.clear())
     }
 
     /// Adds a lamp and returns its index.
@@ -148,6 +192,7 @@ impl SceneBuilder {
         let camera = self.camera.take().ok_or_else(|| {
             RenderError::Scene("the scene has no camera; add one and make it the active camera".into())
         })?;
+        self.meshes.iter_mut().for_each(|mesh| mesh.drop_bad_triangles(&mut self.problems));
         self.keep_usable_objects();
         let space = self.measure();
         let camera = place_camera(&camera, &space)?;
@@ -185,12 +230,9 @@ impl SceneBuilder {
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let mesh_bounds: Vec<_> = self.meshes.iter().map(MeshArrays::bounds).collect();
         for object in &self.objects {
-            let [a, b] = mesh_bounds[object.mesh];
-            for corner in 0..8 {
-                let pick = |bit: i32, x: f64, y: f64| if corner & bit == 0 { x } else { y };
-                let p = DVec3::new(pick(1, a.x, b.x), pick(2, a.y, b.y), pick(4, a.z, b.z));
-                let p = object.world_from_object.transform_point3(p);
-                (low, high) = (low.min(p), high.max(p));
+            for placement in object.placements() {
+                let [a, b] = box_about(mesh_bounds[object.mesh], &placement);
+                (low, high) = (low.min(a), high.max(b));
             }
         }
         if !(low.is_finite() && high.is_finite()) {
@@ -208,6 +250,7 @@ impl SceneBuilder {
         let scene_from_world = space.scene_from_world();
         let mut shared: Vec<Option<(Arc<Mesh>, DAffine3)>> = vec![None; self.meshes.len()];
         let default_material = u32::try_from(self.materials.len()).unwrap_or(u32::MAX);
+        let deforms: Vec<bool> = self.meshes.iter().map(|mesh| !mesh.steps.is_empty()).collect();
         let mut placed = Vec::with_capacity(self.objects.len());
         let mut need_default = false;
         for mut object in std::mem::take(&mut self.objects) {
@@ -216,7 +259,10 @@ impl SceneBuilder {
                 object.materials.push(default_material);
             }
             let transform = scene_from_world * object.world_from_object;
-            let (mesh, scene_from_mesh) = if uses[object.mesh] == 1 {
+            let keys = object.placements();
+            let moves = keys.len() > 1 || deforms[object.mesh];
+            let mut motion = Vec::new();
+            let (mesh, scene_from_mesh) = if uses[object.mesh] == 1 && !moves {
                 let arrays = std::mem::take(&mut self.meshes[object.mesh]);
                 (Arc::new(mesh::transformed(arrays, &transform, &mut self.problems)), None)
             } else {
@@ -225,12 +271,17 @@ impl SceneBuilder {
                         mesh::normalized(std::mem::take(&mut self.meshes[object.mesh]));
                     (Arc::new(mesh), object_from_mesh)
                 });
+                if keys.len() > 1 {
+                    let steps = motion::refined(&keys).into_iter();
+                    motion = steps.map(|step| scene_from_world * step * *object_from_mesh).collect();
+                }
                 (Arc::clone(mesh), Some(transform * *object_from_mesh))
             };
             placed.push(Object {
                 name: object.name,
                 mesh,
                 scene_from_mesh,
+                motion,
                 object_from_scene: transform.inverse(),
                 info: object.info,
                 materials: object.materials,
@@ -305,125 +356,30 @@ fn checked_material(record: MaterialRecord, textures: usize) -> Result<Material,
     Ok(Material { name, closures, program: Some(program) })
 }
 
-fn place_camera(record: &CameraRecord, space: &SceneSpace) -> Result<Camera, RenderError> {
-    let fault = |what: &str| RenderError::Scene(format!("camera '{}': {what}", record.name));
-    let matrix = DAffine3::from_mat4(matrix(&record.world_from_camera));
-    if !matrix.is_finite() {
-        return Err(fault("its transform is not a number"));
-    }
-    let [x, y, z] =
-        [matrix.matrix3.x_axis, matrix.matrix3.y_axis, matrix.matrix3.z_axis].map(DVec3::try_normalize);
-    let (Some(x), Some(y), Some(z)) = (x, y, z) else { return Err(fault("its scale is zero")) };
-    let [left, right, bottom, top] = record.window;
-    if !record.window.iter().all(|v| v.is_finite()) || left == right || bottom == top {
-        return Err(fault("its field of view is empty"));
-    }
-    let [frame_w, frame_h] = record.resolution;
-    let [rx, ry, rw, rh] = record.region;
-    if rw == 0 || rh == 0 || rx.saturating_add(rw) > frame_w || ry.saturating_add(rh) > frame_h {
-        return Err(fault("the part of the frame to render is empty or outside the frame"));
-    }
-    let origin = space.scene_from_world().transform_point3(matrix.translation);
-    let length = match record.projection {
-        Projection::Perspective => 1.0,
-        Projection::Orthographic => space.scale,
+/// The box about a box that was moved.
+fn box_about([a, b]: [DVec3; 2], transform: &DAffine3) -> [DVec3; 2] {
+    let corner = |corner: i32| {
+        let pick = |bit: i32, x: f64, y: f64| if corner & bit == 0 { x } else { y };
+        transform.transform_point3(DVec3::new(pick(1, a.x, b.x), pick(2, a.y, b.y), pick(4, a.z, b.z)))
     };
-    #[expect(clippy::cast_possible_truncation, reason = "clip distances need no more than f32")]
-    let clip = record.clip.map(|d| (d * space.scale) as f32);
-    let lens = match &record.lens {
-        Some(lens) => Lens::new(lens, space.scale).map_err(fault)?,
-        None => None,
-    };
-    Ok(Camera {
-        name: record.name.clone(),
-        projection: record.projection,
-        scene_from_camera: DAffine3::from_cols(x, y, z, origin),
-        window: record.window.map(|v| v * length),
-        resolution: record.resolution,
-        region: record.region,
-        clip,
-        lens,
-    })
+    (0..8)
+        .map(corner)
+        .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
 }
 
-fn place_lamp(record: LampRecord, space: &SceneSpace, problems: &mut Problems) -> Option<Lamp> {
-    let transform = DAffine3::from_mat4(matrix(&record.world_from_lamp));
-    if !transform.is_finite() || !record.power.is_finite() {
-        problems.add(&record.name, "its transform or power is not a number; the lamp is left out", 1);
-        return None;
-    }
-    if record.power.0.iter().any(|&c| c < 0.0) {
-        problems.add(&record.name, "its power is negative; zero is used", 1);
-    }
-    let power = record.power.map(|c| c.max(0.0));
-    if power.is_black() {
-        return None;
-    }
-    let axes = transform.matrix3;
-    let scales = DVec3::new(axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length());
-    let z = axes.z_axis.try_normalize();
-    let Some(z) = z else {
-        problems.add(&record.name, "its scale is zero; the lamp is left out", 1);
-        return None;
-    };
-    let fallback = z.any_orthonormal_pair();
-    let x = axes.x_axis.try_normalize().unwrap_or(fallback.0);
-    let y = axes.y_axis.try_normalize().unwrap_or(fallback.1);
-    let shape = match record.shape {
-        LampShape::Point { radius, soft_falloff } => {
-            LampShape::Point { radius: length(radius, space.scale), soft_falloff }
-        }
-        LampShape::Spot { radius, soft_falloff, cone_angle, blend } => {
-            LampShape::Spot { radius: length(radius, space.scale), soft_falloff, cone_angle, blend }
-        }
-        LampShape::Sun { angle } => LampShape::Sun { angle },
-        LampShape::Rectangle { size, spread } => {
-            LampShape::Rectangle { size: lamp_size(size, scales, space.scale), spread }
-        }
-        LampShape::Ellipse { size, spread } => {
-            LampShape::Ellipse { size: lamp_size(size, scales, space.scale), spread }
-        }
-    };
-    if let LampShape::Rectangle { size, .. } | LampShape::Ellipse { size, .. } = shape
-        && !(size[0] > 0.0 && size[1] > 0.0)
-    {
-        problems.add(&record.name, "its size is zero; the lamp is left out", 1);
-        return None;
-    }
-    if matches!(shape, LampShape::Spot { .. }) && scales.x.min(scales.y) <= 0.0 {
-        problems.add(&record.name, "its scale is zero across its cone; the lamp is left out", 1);
-        return None;
-    }
-    let is_sun = matches!(shape, LampShape::Sun { .. });
-    #[expect(clippy::cast_possible_truncation, reason = "the factor is a power of two")]
-    let power = if is_sun { power } else { power * (space.scale * space.scale) as f32 };
-    Some(Lamp {
-        name: record.name,
-        shape,
-        power,
-        position: space.scene_from_world().transform_point3(transform.translation).as_vec3(),
-        x_axis: x.as_vec3(),
-        y_axis: y.as_vec3(),
-        axis: -z.as_vec3(),
-        stretch: [scales.x, scales.y].map(|length| (length / scales.z) as f32),
-        visibility: record.visibility & visibility::ALL,
-        casts_shadow: record.casts_shadow,
-    })
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "lengths in scene space are near one")]
-fn length(metres: f32, scale: f64) -> f32 {
-    (f64::from(metres) * scale).max(0.0) as f32
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "lengths in scene space are near one")]
-fn lamp_size(size: [f32; 2], scales: DVec3, scale: f64) -> [f32; 2] {
-    [(f64::from(size[0]) * scales.x * scale) as f32, (f64::from(size[1]) * scales.y * scale) as f32]
-}
-
+/// Bounds of all objects at all times.
 fn bounds_of(objects: &[Object]) -> [Vec3; 2] {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for object in objects {
+        for step in &object.motion {
+            // Meshes of what moves are in a unit cube of their own.
+            let [a, b] = box_about([DVec3::splat(-0.5), DVec3::splat(0.5)], step);
+            (low, high) = (low.min(a.as_vec3()), high.max(b.as_vec3()));
+        }
+        for p in object.mesh.steps.iter().flatten() {
+            let p = object.scene_from_mesh.map_or(*p, |t| t.transform_point3(p.as_dvec3()).as_vec3());
+            (low, high) = (low.min(p), high.max(p));
+        }
         for p in &object.mesh.positions {
             let p = object.scene_from_mesh.map_or(*p, |t| t.transform_point3(p.as_dvec3()).as_vec3());
             (low, high) = (low.min(p), high.max(p));

@@ -1,8 +1,11 @@
 //! Meshes as they arrive, what is dropped from them, and their way into scene space.
 
+use std::iter::once;
+
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use super::builder::Problems;
+use super::motion::MOST_STEPS;
 use super::{CornerLayer, Mesh};
 use crate::error::RenderError;
 
@@ -13,6 +16,8 @@ pub struct MeshArrays {
     pub name: String,
     /// Vertex positions (m).
     pub positions: Vec<[f32; 3]>,
+    /// The same at even times while the shutter is open, the middle left out; empty where they stay the same.
+    pub steps: Vec<Vec<[f32; 3]>>,
     /// Vertex indices.
     pub triangles: Vec<[u32; 3]>,
     /// Normal at each corner of each triangle; empty: flat.
@@ -44,6 +49,9 @@ impl MeshArrays {
             }
         }
         let vertices = self.positions.len();
+        if !is_step_count(self.steps.len()) || self.steps.iter().any(|step| step.len() != vertices) {
+            return fault(format!("its steps are not two or more, in pairs, of {vertices} positions each"));
+        }
         match self.triangles.iter().flatten().find(|&&v| v as usize >= vertices) {
             Some(v) => fault(format!("a triangle uses vertex {v} of {vertices}")),
             None => Ok(()),
@@ -74,6 +82,11 @@ impl MeshArrays {
             self.layers.iter_mut().for_each(|layer| layer.retain(&keep));
             retain(&mut self.slots, &keep);
         }
+        let is_bad = |p: &[f32; 3]| !Vec3::from(*p).is_finite();
+        if self.steps.iter().flatten().any(is_bad) {
+            problems.add(&self.name, "it moves to where is no number; its shape is not blurred", 1);
+            self.steps.clear();
+        }
         let mut used = vec![false; self.positions.len()];
         self.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
         if used.contains(&false) {
@@ -89,20 +102,26 @@ impl MeshArrays {
             let slot = &mut new_index[*v as usize];
             if *slot == u32::MAX {
                 *slot = u32::try_from(kept.len()).unwrap_or(u32::MAX);
-                kept.push(self.positions[*v as usize]);
+                kept.push(*v as usize);
             }
             *v = *slot;
         }
-        self.positions = kept;
+        for positions in self.steps.iter_mut().chain(once(&mut self.positions)) {
+            *positions = kept.iter().map(|&v| positions[v]).collect();
+        }
     }
 
-    /// Bounds of the vertices, in the object's space.
+    /// Bounds of the vertices at all times, in the object's space.
     pub(super) fn bounds(&self) -> [DVec3; 2] {
-        self.positions
-            .iter()
+        (self.positions.iter().chain(self.steps.iter().flatten()))
             .map(|&p| Vec3::from(p).as_dvec3())
             .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
     }
+}
+
+/// Whether something may have so many steps besides the middle.
+pub(super) const fn is_step_count(count: usize) -> bool {
+    count.is_multiple_of(2) && count < MOST_STEPS
 }
 
 /// Area at most 10⁻¹⁴ of the longest edge squared: the normal is rounding noise.
@@ -158,12 +177,18 @@ fn placed(arrays: MeshArrays, transform: &DAffine3) -> Mesh {
     let normal = |n: [f32; 3]| {
         (normal_matrix * Vec3::from(n).as_dvec3()).try_normalize().map_or(Vec3::ZERO, DVec3::as_vec3)
     };
+    let place = |positions: &[[f32; 3]]| -> Vec<Vec3> {
+        let place = |&p: &[f32; 3]| transform.transform_point3(Vec3::from(p).as_dvec3()).as_vec3();
+        positions.iter().map(place).collect()
+    };
+    let positions = place(&arrays.positions);
+    let mut steps: Vec<_> = arrays.steps.iter().map(|step| place(step)).collect();
+    if !steps.is_empty() {
+        steps.insert(steps.len() / 2, positions.clone());
+    }
     Mesh {
-        positions: arrays
-            .positions
-            .iter()
-            .map(|&p| transform.transform_point3(Vec3::from(p).as_dvec3()).as_vec3())
-            .collect(),
+        positions,
+        steps,
         triangles: arrays.triangles,
         corner_normals: arrays.corner_normals.into_iter().map(|corners| corners.map(normal)).collect(),
         layers: arrays.layers,

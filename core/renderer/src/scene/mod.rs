@@ -5,9 +5,11 @@
 //! by the square of the length scale, so that power over squared distance still is irradiance in W·m⁻².
 
 mod builder;
+mod equipment;
 mod layer;
 mod lens;
 mod mesh;
+mod motion;
 pub mod record;
 
 use std::sync::Arc;
@@ -18,6 +20,7 @@ pub use builder::SceneBuilder;
 pub use layer::CornerLayer;
 pub use lens::Lens;
 pub use mesh::MeshArrays;
+pub use motion::{MIDDLE, Shutter};
 pub use record::{LampShape, ObjectInfo, Projection, visibility};
 
 use crate::color::Rgb;
@@ -46,6 +49,8 @@ impl SceneSpace {
 pub struct Mesh {
     /// Vertex positions.
     pub positions: Vec<Vec3>,
+    /// Vertex positions at even times while the shutter is open; empty where they stay the same.
+    pub steps: Vec<Vec<Vec3>>,
     /// Vertex indices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Shading normal at each corner of each triangle; empty means flat.
@@ -61,6 +66,15 @@ impl Mesh {
     #[must_use]
     pub fn corners(&self, index: usize) -> [Vec3; 3] {
         self.triangles[index].map(|v| self.positions[v as usize])
+    }
+
+    fn corners_at(&self, index: usize, time: f32) -> [DVec3; 3] {
+        if self.steps.is_empty() {
+            return self.corners(index).map(Vec3::as_dvec3);
+        }
+        let (step, part) = motion::interval(time, self.steps.len());
+        let position = |step: usize, v: u32| self.steps[step][v as usize].as_dvec3();
+        self.triangles[index].map(|v| position(step, v).lerp(position(step + 1, v), part))
     }
 
     /// Material slot of triangle `index`.
@@ -79,6 +93,8 @@ pub struct Object {
     pub mesh: Arc<Mesh>,
     /// Transform into scene space; `None` where the mesh already is in scene space (used once).
     pub scene_from_mesh: Option<DAffine3>,
+    /// The same at even times while the shutter is open; empty where it stays the same.
+    pub motion: Vec<DAffine3>,
     /// Scene space to the object's own.
     pub object_from_scene: DAffine3,
     /// What materials may ask about the object.
@@ -101,6 +117,26 @@ impl Object {
     pub fn material(&self, primitive: usize) -> usize {
         let slot = self.mesh.slot(primitive).min(self.materials.len() - 1);
         self.materials[slot] as usize
+    }
+
+    /// True where anything of it changes while the shutter is open.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        !(self.motion.is_empty() && self.mesh.steps.is_empty())
+    }
+
+    /// As [`Object::corners`], at a time while the shutter is open.
+    #[must_use]
+    pub fn corners_at(&self, primitive: usize, time: f32) -> [DVec3; 3] {
+        let corners = self.mesh.corners_at(primitive, time);
+        match &self.scene_from_mesh {
+            Some(_) if !self.motion.is_empty() => {
+                let transform = motion::at(&self.motion, time);
+                corners.map(|p| transform.transform_point3(p))
+            }
+            Some(transform) => corners.map(|p| transform.transform_point3(p)),
+            None => corners,
+        }
     }
 
     /// Corner positions of triangle `primitive` in scene space.
@@ -180,6 +216,35 @@ pub struct Camera {
     pub clip: [f32; 2],
     /// Its lens; `None` for a pinhole.
     pub lens: Option<Lens>,
+    /// `scene_from_camera` at even times while the shutter is open; empty where it stays the same.
+    pub motion: Vec<DAffine3>,
+    /// `window` at even times; empty where it stays the same.
+    pub windows: Vec<[f64; 4]>,
+    /// How long and how far it opens.
+    pub shutter: Shutter,
+}
+
+impl Camera {
+    /// True where anything of it changes while the shutter is open.
+    #[must_use]
+    pub const fn moves(&self) -> bool {
+        !(self.motion.is_empty() && self.windows.is_empty())
+    }
+
+    /// Camera to scene, and the window, at a time while the shutter is open.
+    #[must_use]
+    pub fn at(&self, time: f32) -> (DAffine3, [f64; 4]) {
+        let place =
+            if self.motion.is_empty() { self.scene_from_camera } else { motion::at(&self.motion, time) };
+        let window = if self.windows.is_empty() {
+            self.window
+        } else {
+            let (step, part) = motion::interval(time, self.windows.len());
+            let [a, b] = [step, step + 1].map(|step| self.windows[step]);
+            std::array::from_fn(|side| a[side] + (b[side] - a[side]) * part)
+        };
+        (place, window)
+    }
 }
 
 /// Light from outside the scene.
@@ -251,4 +316,17 @@ pub struct Scene {
     pub bounds: [Vec3; 2],
     /// What was found wrong.
     pub problems: Vec<Problem>,
+}
+
+impl Scene {
+    /// Memory (bytes) of what changes while the shutter is open.
+    #[must_use]
+    pub fn motion_bytes(&self) -> usize {
+        let moving = self.objects.iter().filter(|object| object.moves());
+        let bytes = moving.map(|object| {
+            let positions: usize = object.mesh.steps.iter().map(|step| size_of_val(step.as_slice())).sum();
+            positions / Arc::strong_count(&object.mesh) + size_of_val(object.motion.as_slice())
+        });
+        bytes.sum::<usize>() + size_of_val(self.camera.motion.as_slice())
+    }
 }

@@ -63,6 +63,20 @@ pub enum ClosureRecord {
         /// Index of refraction.
         ior: f32,
     },
+    /// Lambertian transmission: what arrives on one side leaves the other (Blender's Translucent BSDF).
+    Translucent {
+        /// Albedo.
+        color: Rgb,
+    },
+    /// Reflection from fibers (Blender's Sheen BSDF, Microfiber).
+    Sheen {
+        /// Tint.
+        color: Rgb,
+        /// Blender's roughness.
+        roughness: f32,
+    },
+    /// Rays from the camera see a hole in the picture; nothing is scattered.
+    Holdout,
     /// Light passes straight through, tinted.
     Transparent {
         /// Transmittance.
@@ -96,6 +110,9 @@ pub struct PrincipledRecord {
     pub coat_tint: Rgb,
     pub emission_color: Rgb,
     pub emission_strength: f32,
+    pub sheen_weight: f32,
+    pub sheen_roughness: f32,
+    pub sheen_tint: Rgb,
 }
 
 impl PrincipledRecord {
@@ -116,6 +133,9 @@ impl PrincipledRecord {
             Input::CoatTint => Color(&mut self.coat_tint),
             Input::EmissionColor => Color(&mut self.emission_color),
             Input::EmissionStrength => Number(&mut self.emission_strength),
+            Input::SheenWeight => Number(&mut self.sheen_weight),
+            Input::SheenRoughness => Number(&mut self.sheen_roughness),
+            Input::SheenTint => Color(&mut self.sheen_tint),
             Input::Weight | Input::Color | Input::Radiance => return None,
         })
     }
@@ -138,6 +158,9 @@ impl Default for PrincipledRecord {
             coat_tint: Rgb::WHITE,
             emission_color: Rgb::WHITE,
             emission_strength: 0.0,
+            sheen_weight: 0.0,
+            sheen_roughness: 0.5,
+            sheen_tint: Rgb::WHITE,
         }
     }
 }
@@ -211,6 +234,9 @@ pub enum Input {
     CoatTint,
     EmissionColor,
     EmissionStrength,
+    SheenWeight,
+    SheenRoughness,
+    SheenTint,
 }
 
 impl WeightedClosure {
@@ -224,15 +250,20 @@ impl WeightedClosure {
         match (&mut self.closure, input) {
             (
                 C::Diffuse { color }
+                | C::Translucent { color }
                 | C::Transparent { color }
                 | C::Glossy { color, .. }
+                | C::Sheen { color, .. }
                 | C::Glass { color, .. }
                 | C::Refraction { color, .. },
                 Input::Color,
             ) => Some(Color(color)),
             (C::Emission { radiance }, Input::Radiance) => Some(Color(radiance)),
             (
-                C::Glossy { roughness, .. } | C::Glass { roughness, .. } | C::Refraction { roughness, .. },
+                C::Glossy { roughness, .. }
+                | C::Glass { roughness, .. }
+                | C::Refraction { roughness, .. }
+                | C::Sheen { roughness, .. },
                 Input::Roughness,
             ) => Some(Number(roughness)),
             (C::Glass { ior, .. } | C::Refraction { ior, .. }, Input::Ior) => Some(Number(ior)),
@@ -371,6 +402,22 @@ pub struct CameraRecord {
     /// Its lens; without one it is a pinhole.
     #[serde(default)]
     pub lens: Option<LensRecord>,
+    /// What else it is at even times while the shutter is open, the middle left out; empty where it stays the same.
+    #[serde(default)]
+    pub steps: Vec<CameraStep>,
+    /// How open the shutter is at even times, from when it opens until it is shut; empty where that is all the same.
+    #[serde(default)]
+    pub shutter: Vec<f64>,
+}
+
+/// A camera at one time.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraStep {
+    /// See [`CameraRecord`].
+    pub world_from_camera: [[f64; 4]; 4],
+    /// See [`CameraRecord`].
+    pub window: [f64; 4],
 }
 
 /// Light from everywhere outside.

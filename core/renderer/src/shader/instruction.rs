@@ -27,6 +27,18 @@ pub enum Aside {
     Y,
 }
 
+/// A texture and the unit square of the plane that it fills.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tile {
+    /// Its lowest x.
+    pub column: u32,
+    /// Its lowest y.
+    pub row: u32,
+    /// The texture.
+    pub texture: u32,
+}
+
 /// What a program asks of the point it is run for. Vectors are in world space where nothing else is said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -102,6 +114,14 @@ pub enum Instruction {
     /// A texture at `vector`'s x and y. `unassociate`: the color is divided by its alpha.
     Image {
         texture: u32,
+        vector: Register,
+        extension: Extension,
+        interpolation: Interpolation,
+        unassociate: bool,
+    },
+    /// One of several textures at `vector`'s x and y, each for one unit square of the plane (UDIM); magenta where there is none.
+    TiledImage {
+        tiles: Vec<Tile>,
         vector: Register,
         extension: Extension,
         interpolation: Interpolation,
@@ -194,6 +214,7 @@ impl Instruction {
             | Self::Panorama { vector, .. }
             | Self::SunDisk { vector, .. }
             | Self::Image { vector, .. }
+            | Self::TiledImage { vector, .. }
             | Self::Gradient { vector, .. } => smallvec![vector],
             Self::Mapping { vector, location, rotation, scale } => {
                 smallvec![vector, location, rotation, scale]
@@ -236,6 +257,10 @@ impl Instruction {
         match *self {
             Self::Image { texture, .. } | Self::BoxImage { texture, .. } if texture as usize >= textures => {
                 Some(format!("instruction {index} reads texture {texture} of {textures}"))
+            }
+            Self::TiledImage { ref tiles, .. } => {
+                let bad = tiles.iter().find(|tile| tile.texture as usize >= textures)?;
+                Some(format!("instruction {index} reads texture {} of {textures}", bad.texture))
             }
             Self::Channel { channel, .. } if channel > 2 => {
                 Some(format!("instruction {index} takes channel {channel} of three"))

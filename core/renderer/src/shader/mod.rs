@@ -21,7 +21,7 @@ use glam::Vec4;
 use smallvec::SmallVec;
 
 pub use arithmetic::{BlendMode, MathFunction, VectorFunction};
-pub use instruction::{Aside, Instruction, MOST_INSTRUCTIONS, NormalSpace, Quantity, Register};
+pub use instruction::{Aside, Instruction, MOST_INSTRUCTIONS, NormalSpace, Quantity, Register, Tile};
 pub use noise::Fractal;
 pub use pattern::{GradientShape, Pattern, VoronoiOutput, WaveDirection, WaveProfile};
 pub use texture::{Encoding, Extension, Interpolation, Pixels, Texture};
@@ -120,6 +120,9 @@ impl Program {
         let width = |step: &Instruction| match *step {
             Instruction::Image { texture, .. } | Instruction::BoxImage { texture, .. } => {
                 textures[texture as usize].size()[0]
+            }
+            Instruction::TiledImage { ref tiles, .. } => {
+                tiles.iter().map(|tile| textures[tile.texture as usize].size()[0]).max().unwrap_or(0)
             }
             Instruction::SunDisk { radius, .. } => (4.0 * std::f32::consts::PI / radius.max(1e-6)) as usize,
             _ => 0,

@@ -4,10 +4,13 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 use smallvec::SmallVec;
 
 use super::arithmetic::{self, BlendMode, MathFunction, VectorFunction};
-use super::instruction::{Instruction, Register};
+use super::instruction::{Instruction, Register, Tile};
 use super::surface::{self, BumpHeights};
 use super::texture::Texture;
 use super::{Point, Program, Registers, Value, panorama, pattern};
+
+/// What is seen where a tiled image has no tile, as in Cycles.
+const NO_TILE: Vec4 = Vec4::new(1.0, 0.0, 1.0, 1.0);
 
 impl Program {
     /// Every register at `point`.
@@ -63,6 +66,17 @@ fn execute(
             let texture = &textures[texture as usize];
             let v = texture.color([at.v.x, at.v.y], at.width, extension, interpolation, unassociate);
             Value { v, width: 0.0 }
+        }
+        Instruction::TiledImage { ref tiles, vector, extension, interpolation, unassociate } => {
+            let at = r.value(vector);
+            let (column, row) = (at.v.x.floor(), at.v.y.floor());
+            let holds = |tile: &&Tile| tile.column as f32 == column && tile.row as f32 == row;
+            let color = |tile: &Tile| {
+                let texture = &textures[tile.texture as usize];
+                let place = [at.v.x - column, at.v.y - row];
+                texture.color(place, at.width, extension, interpolation, unassociate)
+            };
+            Value { v: tiles.iter().find(holds).map_or(NO_TILE, color), width: 0.0 }
         }
         Instruction::BoxImage { texture, vector, normal, blend, extension, interpolation, unassociate } => {
             let at = r.value(vector);

@@ -37,6 +37,14 @@ pub(crate) fn glass(color: f32, roughness: f32, ior: f32) -> ClosureRecord {
     ClosureRecord::Glass { color: Rgb::splat(color), roughness, ior }
 }
 
+pub(crate) fn translucent(color: f32) -> ClosureRecord {
+    ClosureRecord::Translucent { color: Rgb::splat(color) }
+}
+
+pub(crate) fn sheen(color: f32, roughness: f32) -> ClosureRecord {
+    ClosureRecord::Sheen { color: Rgb::splat(color), roughness }
+}
+
 pub(crate) fn principled(change: impl FnOnce(&mut PrincipledRecord)) -> ClosureRecord {
     let mut record = PrincipledRecord::default();
     change(&mut record);

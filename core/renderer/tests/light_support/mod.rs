@@ -7,8 +7,8 @@ use glam::{DAffine3, DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::light::Lights;
 use rgp_renderer::scene::{
-    Camera, Lamp, LampShape, Material, Mesh, Object, ObjectInfo, Projection, Scene, SceneSpace, World,
-    visibility,
+    Camera, Lamp, LampShape, Material, Mesh, Object, ObjectInfo, Projection, Scene, SceneSpace, Shutter,
+    World, visibility,
 };
 
 /// A ray kind for look-ups: any one bit.
@@ -53,6 +53,7 @@ pub(crate) fn object(
         name: "object".into(),
         mesh: Arc::new(mesh),
         scene_from_mesh: place,
+        motion: Vec::new(),
         object_from_scene: DAffine3::IDENTITY,
         info: ObjectInfo::default(),
         materials,
@@ -78,6 +79,9 @@ pub(crate) fn scene(lamps: Vec<Lamp>, objects: Vec<Object>, world_radiance: f32)
             resolution: [8, 8],
             region: [0, 0, 8, 8],
             clip: [0.1, 10.0],
+            motion: Vec::new(),
+            windows: Vec::new(),
+            shutter: Shutter::default(),
         },
         world: World {
             radiance: Rgb::splat(world_radiance),

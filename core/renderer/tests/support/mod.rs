@@ -186,6 +186,8 @@ pub(crate) fn camera(from: DVec3, at: DVec3, half_width: f64, pixels: u32) -> Ca
         region: [0, 0, pixels, pixels],
         clip: [0.0, 1e12],
         lens: None,
+        steps: Vec::new(),
+        shutter: Vec::new(),
     }
 }
 

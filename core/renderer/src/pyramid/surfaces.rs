@@ -1,0 +1,398 @@
+//! How much surface of each cell counts: what flux is divided by. Measured after the photons have landed: where none did,
+//! and that is the inside of every solid, nothing has to be known.
+
+use std::sync::atomic::{AtomicI64, Ordering};
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::Surroundings;
+use super::accumulator::CellSum;
+use super::class::BACKS;
+use super::index::CellKey;
+use super::layout::Layout;
+use super::measure::measure;
+
+/// Surface inside one cell and normal class. Sums are integers, so that their order does not matter.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct CellSurface {
+    /// Area in units of [`Layout::area_unit`].
+    pub(super) area: i64,
+    /// Area-weighted normal, in the same unit.
+    pub(super) normal: [i64; 3],
+    /// Area-weighted position relative to the lattice's origin, in the same unit.
+    pub(super) centroid: [i64; 3],
+    /// Area of what needs direction bins.
+    pub(super) glossy_area: i64,
+}
+
+impl CellSurface {
+    pub(super) fn add(&mut self, other: &Self) {
+        self.area += other.area;
+        for c in 0..3 {
+            self.normal[c] += other.normal[c];
+            self.centroid[c] += other.centroid[c];
+        }
+        self.glossy_area += other.glossy_area;
+    }
+
+    /// What `area` of a surface that is the same everywhere amounts to.
+    #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "a share of the area")]
+    pub(super) fn part(&self, area: i64) -> Self {
+        let share = |value: i64| (value as f64 * (area as f64 / self.area.max(1) as f64)).round() as i64;
+        Self {
+            area,
+            normal: self.normal.map(share),
+            centroid: self.centroid.map(share),
+            glossy_area: share(self.glossy_area),
+        }
+    }
+
+    /// To take it away from a sum.
+    fn negative(&self) -> Self {
+        Self {
+            area: -self.area,
+            normal: self.normal.map(|c| -c),
+            centroid: self.centroid.map(|c| -c),
+            glossy_area: -self.glossy_area,
+        }
+    }
+
+    /// The rest of it without `part`.
+    pub(super) fn without(mut self, part: &Self) -> Self {
+        self.add(&part.negative());
+        self
+    }
+
+    /// True when both are flat, look at each other and lie in one plane.
+    fn touches(&self, other: &Self, cell_size: f32) -> bool {
+        const FLAT: f64 = 0.9999;
+        let direction = |surface: &Self| DVec3::from(surface.normal.map(|c| c as f64)) / surface.area as f64;
+        if self.area == 0 || other.area == 0 {
+            return false;
+        }
+        let (a, b) = (direction(self), direction(other));
+        let distance = (self.centroid() - other.centroid()).as_dvec3().dot(a).abs();
+        a.length() > FLAT && b.length() > FLAT && a.dot(b) < -FLAT && distance < 1e-3 * f64::from(cell_size)
+    }
+
+    /// Center of gravity, relative to the lattice's origin.
+    #[expect(clippy::cast_precision_loss, reason = "a position needs no more than 53 bits")]
+    pub(super) fn centroid(&self) -> Vec3 {
+        (DVec3::from(self.centroid.map(|c| c as f64)) / self.area.max(1) as f64).as_vec3()
+    }
+
+    /// Unit mean normal; the class's own axis would be wrong by up to 55°.
+    #[expect(clippy::cast_precision_loss, reason = "a direction needs no more than 53 bits")]
+    pub(super) fn mean_normal(&self) -> Vec3 {
+        DVec3::from(self.normal.map(|c| c as f64)).normalize_or(DVec3::Z).as_vec3()
+    }
+}
+
+/// Sums of [`CellSurface`] that several threads add to.
+#[derive(Debug, Default)]
+struct SurfaceSum {
+    area: AtomicI64,
+    normal: [AtomicI64; 3],
+    centroid: [AtomicI64; 3],
+    glossy_area: AtomicI64,
+}
+
+impl SurfaceSum {
+    fn add(&self, surface: &CellSurface) {
+        let add = |sum: &AtomicI64, value: i64| sum.fetch_add(value, Ordering::Relaxed);
+        add(&self.area, surface.area);
+        for c in 0..3 {
+            add(&self.normal[c], surface.normal[c]);
+            add(&self.centroid[c], surface.centroid[c]);
+        }
+        add(&self.glossy_area, surface.glossy_area);
+    }
+
+    fn get(&self) -> CellSurface {
+        let value = |sum: &AtomicI64| sum.load(Ordering::Relaxed);
+        CellSurface {
+            area: value(&self.area),
+            normal: self.normal.each_ref().map(value),
+            centroid: self.centroid.each_ref().map(value),
+            glossy_area: value(&self.glossy_area),
+        }
+    }
+}
+
+/// Surface of the cells of one level by place, what light can reach and what is hidden.
+type LevelSums = Vec<[SurfaceSum; 2]>;
+
+/// Memory (bytes) per cell that measuring takes.
+pub(super) const BYTES_PER_CELL: usize =
+    size_of::<[SurfaceSum; 2]>() + size_of::<CellSurface>() + size_of::<bool>();
+
+/// Surface of the cells of one level, by place.
+#[derive(Debug)]
+pub(super) struct LevelSurfaces {
+    /// What counts.
+    pub(super) surfaces: Vec<CellSurface>,
+    /// Whether light cannot come to the cell's surface, or hardly: it counts for itself, and not for a coarser cell that
+    /// holds open surface too.
+    hidden: Vec<bool>,
+}
+
+/// Surface of all cells that light came to, or to a cell of the coarsest level around them; the others have none.
+#[derive(Debug)]
+pub(super) struct Surfaces<'a> {
+    pub(super) layout: &'a Layout,
+    /// By level.
+    pub(super) levels: Vec<LevelSurfaces>,
+}
+
+/// Where less than this part of a cell's surface is open, all of it counts: what little light there is has to land.
+const LEAST_OPEN: i64 = 8;
+
+impl<'a> Surfaces<'a> {
+    /// Asks of the surface of lit cells whether light can come to it: hidden surface, such as the floor under a box, is left
+    /// out beside open one. `None` when cancelled.
+    pub(super) fn measure(
+        layout: &'a Layout,
+        landed: &[Vec<CellSum>],
+        scene: &impl Surroundings,
+    ) -> Option<Self> {
+        let lit = lit_cells(layout, landed);
+        let empty = |lit: &Vec<bool>| lit.iter().map(|_| Default::default()).collect();
+        let sums: Vec<LevelSums> = lit.iter().map(empty).collect();
+        measure(layout, &lit, scene, &|level, place, [open, hidden]| {
+            let [open_sum, hidden_sum] = &sums[level][place];
+            open_sum.add(&open);
+            hidden_sum.add(&hidden);
+        })?;
+        for (level, sums) in sums.iter().enumerate() {
+            hide_contacts(layout, level, sums);
+        }
+        let mut levels = Vec::new();
+        for (level, cells) in sums.iter().enumerate().rev() {
+            let counted = |pair: &[SurfaceSum; 2]| counted(pair.each_ref().map(SurfaceSum::get));
+            let (surfaces, hidden): (Vec<CellSurface>, Vec<bool>) = cells.par_iter().map(counted).unzip();
+            let places = (0..cells.len()).into_par_iter().filter(|&place| surfaces[place].area > 0);
+            places.for_each(|place| {
+                if let Some(parent) = layout.parent(level, place) {
+                    sums[level - 1][parent][usize::from(hidden[place])].add(&surfaces[place]);
+                }
+            });
+            levels.push(LevelSurfaces { surfaces, hidden });
+        }
+        levels.reverse();
+        Some(Self { layout, levels })
+    }
+
+    /// Area of what counts of a cell (square scene units).
+    #[expect(clippy::cast_precision_loss, reason = "an area needs no more than 53 bits")]
+    pub(super) fn area(&self, level: usize, place: usize) -> f64 {
+        self.levels[level].surfaces[place].area as f64 * self.layout.area_unit()
+    }
+
+    /// Place of the coarser cell that a cell is a part of: where its surface and light are counted too.
+    pub(super) fn counting_parent(&self, level: usize, place: usize) -> Option<usize> {
+        let hidden = self.levels[level].hidden[place];
+        self.layout.parent(level, place).filter(|&parent| !hidden || self.levels[level - 1].hidden[parent])
+    }
+}
+
+/// By level and place: whether light landed in the cell of the coarsest level around it.
+fn lit_cells(layout: &Layout, landed: &[Vec<CellSum>]) -> Vec<Vec<bool>> {
+    let mut lit: Vec<Vec<bool>> =
+        landed.iter().map(|cells| cells.iter().map(|cell| cell.count > 0).collect()).collect();
+    for level in (1..lit.len()).rev() {
+        let (coarser, finer) = lit.split_at_mut(level);
+        for (place, _) in finer[0].iter().enumerate().filter(|(_, lit)| **lit) {
+            if let Some(parent) = layout.parent(level, place) {
+                coarser[level - 1][parent] = true;
+            }
+        }
+    }
+    for level in 1..lit.len() {
+        let (coarser, finer) = lit.split_at_mut(level);
+        finer[0].par_iter_mut().enumerate().for_each(|(place, lit)| {
+            *lit = layout.parent(level, place).map_or(*lit, |parent| coarser[level - 1][parent]);
+        });
+    }
+    lit
+}
+
+/// Hides the surface where two flat fronts of a cell lie on each other, such as a box's bottom and the floor.
+fn hide_contacts(layout: &Layout, level: usize, sums: &[[SurfaceSum; 2]]) {
+    let (level_box, cells) = (&layout.grid.levels[level], &layout.levels[level]);
+    let contact = |(place, key): (usize, &CellKey)| {
+        let (cell, class) = key.cell(level_box);
+        if class >= BACKS || layout.classes.facing(class) < class {
+            return None;
+        }
+        let other = cells.index.find(cell, layout.classes.facing(class))?;
+        let [front, facing] = [place, other].map(|place| sums[place][0].get());
+        let is_contact = front.touches(&facing, level_box.cell_size);
+        is_contact.then(|| ([place, other], front.area.min(facing.area)))
+    };
+    // A cell has one facing class: no two contacts share a cell.
+    cells.keys.par_iter().enumerate().filter_map(contact).for_each(|(places, area)| {
+        for place in places {
+            let [open, hidden] = &sums[place];
+            let taken = open.get().part(area);
+            hidden.add(&taken);
+            open.add(&taken.negative());
+        }
+    });
+}
+
+/// What counts of a cell's open and hidden surface, and whether it is hidden as a whole, so that all of it does.
+fn counted([open, hidden]: [CellSurface; 2]) -> (CellSurface, bool) {
+    let mut surface = open;
+    let is_hidden = open.area * LEAST_OPEN < hidden.area;
+    if is_hidden {
+        surface.add(&hidden);
+    } else if open.glossy_area * LEAST_OPEN < hidden.glossy_area {
+        surface.glossy_area += hidden.glossy_area;
+    }
+    (surface, is_hidden)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Side;
+    use crate::pyramid::{Grid, NormalClasses, SidePoint, SurfaceTriangle};
+
+    /// Triangles in a place of their own, where `is_open` tells which points light can come to.
+    struct Scene<F> {
+        triangles: Vec<SurfaceTriangle>,
+        is_open: F,
+    }
+
+    impl<F: Fn(&SidePoint) -> bool + Sync> Surroundings for Scene<F> {
+        fn triangle_count(&self) -> usize {
+            self.triangles.len()
+        }
+
+        fn triangle(&self, i: usize) -> SurfaceTriangle {
+            self.triangles[i]
+        }
+
+        fn open(&self, points: &[SidePoint]) -> Vec<bool> {
+            points.iter().map(&self.is_open).collect()
+        }
+
+        fn sees(&self, _: Vec3, _: Vec3) -> bool {
+            true
+        }
+
+        fn keep_going(&self) -> bool {
+            true
+        }
+    }
+
+    fn triangle([a, b, c]: [DVec3; 3], glossy: bool) -> SurfaceTriangle {
+        SurfaceTriangle { corners: [a, b, c], normal: (b - a).cross(c - a).normalize().as_vec3(), glossy }
+    }
+
+    /// As if one photon had landed in every cell that `is_lit`.
+    fn landed(layout: &Layout, is_lit: impl Fn(usize, usize) -> bool) -> Vec<Vec<CellSum>> {
+        let sum = |is_lit: bool| CellSum { count: u64::from(is_lit), ..CellSum::default() };
+        let level = |number: usize| {
+            let places = 0..layout.levels[number].keys.len();
+            places.map(|place| sum(is_lit(number, place))).collect()
+        };
+        (0..layout.levels.len()).map(level).collect()
+    }
+
+    /// Area per level is the area of the surfaces, both sides, at every level.
+    #[test]
+    fn every_level_holds_the_whole_area() {
+        let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) * 0.07;
+        let corners = [
+            [p(-5.0, -5.0, -1.0), p(5.0, -5.0, -1.0), p(5.0, 5.0, -1.2)],
+            [p(-1.0, 0.3, -1.0), p(1.0, 0.2, 2.0), p(0.0, 1.0, 0.4)],
+            [p(0.0, 0.0, 0.0), p(0.1, 0.0, 0.0), p(0.0, 0.1, 0.05)],
+        ];
+        let half = DVec3::splat(0.4);
+        let grid = Grid::new([-half * 0.2, half * 0.2], [-half, half], 20, DVec3::ZERO);
+        let triangles = (0..).zip(corners).map(|(i, corners)| triangle(corners, i == 1)).collect();
+        let scene = Scene { triangles, is_open: |_: &SidePoint| true };
+        let layout = Layout::new(grid, NormalClasses::Six, &scene).unwrap();
+        let surfaces = Surfaces::measure(&layout, &landed(&layout, |_, _| true), &scene).unwrap();
+        let exact: f64 = corners.iter().map(|[a, b, c]| (b - a).cross(c - a).length()).sum();
+        let sum: f64 = (0..layout.levels[0].keys.len()).map(|place| surfaces.area(0, place)).sum();
+        assert!((sum - exact).abs() < 1e-9 * exact, "{sum} against {exact}");
+        let finest = &surfaces.levels[layout.grid.finest()].surfaces;
+        assert!(finest.iter().any(|s| s.glossy_area > 0));
+        assert!(finest.iter().any(|s| s.glossy_area == 0));
+    }
+
+    /// Both sides of a square: only the one that light came to is measured, all of it, also where no photon landed.
+    #[test]
+    fn what_light_never_comes_to_is_not_measured() {
+        let p = |x: f64, y: f64| DVec3::new(x, y, 0.013) * 0.1;
+        let corners =
+            [[p(-1.0, -1.0), p(1.0, -1.0), p(1.0, 1.0)], [p(-1.0, -1.0), p(1.0, 1.0), p(-1.0, 1.0)]];
+        let half = DVec3::splat(0.1);
+        let grid = Grid::new([-half, half], [-half, half], 16, DVec3::ZERO);
+        let triangles = corners.map(|corners| triangle(corners, false)).to_vec();
+        let scene = Scene { triangles, is_open: |point: &SidePoint| !point.side.back };
+        let layout = Layout::new(grid, NormalClasses::Six, &scene).unwrap();
+        let front = layout.classes.of(Side { normal: Vec3::Z, back: false });
+        let finest = layout.grid.finest();
+        let class =
+            |level: usize, place: usize| layout.levels[level].keys[place].cell(&layout.grid.levels[level]).1;
+        let coarsest: Vec<_> =
+            (0..layout.levels[0].keys.len()).filter(|&place| class(0, place) == front).collect();
+        let root = |mut level: usize, mut place: usize| {
+            while let Some(parent) = (level > 0).then(|| layout.parent(level, place)).flatten() {
+                (level, place) = (level - 1, parent);
+            }
+            place
+        };
+        let one_each: Vec<usize> = coarsest
+            .iter()
+            .map(|&of| {
+                (0..layout.levels[finest].keys.len()).find(|&place| root(finest, place) == of).unwrap()
+            })
+            .collect();
+        let landed = landed(&layout, |level, place| level == finest && one_each.contains(&place));
+        let surfaces = Surfaces::measure(&layout, &landed, &scene).unwrap();
+        let area = |level: usize, is_front: bool| -> f64 {
+            let places = 0..layout.levels[level].keys.len();
+            let places = places.filter(|&place| (class(level, place) == front) == is_front);
+            places.map(|place| surfaces.area(level, place)).sum()
+        };
+        for level in [0, finest] {
+            assert!((area(level, true) / 0.04 - 1.0).abs() < 1e-9, "level {level}");
+            assert_eq!(area(level, false), 0.0, "level {level}");
+        }
+    }
+
+    /// A floor of 3 × 3 units, partly under a box of 1 × 0.5; all of it in one cell of 8.
+    #[test]
+    fn what_a_box_stands_on_does_not_count() {
+        let p = |x: f64, y: f64| DVec3::new(x, y, 0.0) * 0.05;
+        let rectangle =
+            |x: f64, y: f64| [[p(0.0, 0.0), p(x, 0.0), p(x, y)], [p(0.0, 0.0), p(x, y), p(0.0, y)]];
+        let floor = rectangle(3.0, 3.0);
+        let bottom = rectangle(1.0, 0.5).map(|[a, b, c]| [a, c, b]);
+        let half = DVec3::splat(0.2);
+        let grid = Grid::new([-half, half], [-half, half], 1, DVec3::ZERO);
+        let area = |is_open: &(dyn Fn(&SidePoint) -> bool + Sync), side: Side| {
+            let triangles = floor.iter().chain(&bottom).map(|&corners| triangle(corners, false));
+            let scene = Scene { triangles: triangles.collect(), is_open };
+            let layout = Layout::new(grid.clone(), NormalClasses::Six, &scene).unwrap();
+            let surfaces = Surfaces::measure(&layout, &landed(&layout, |_, _| true), &scene).unwrap();
+            let (level, place) = layout.find(p(2.0, 2.0).as_vec3(), layout.classes.of(side)).unwrap();
+            surfaces.area(level, place) / 0.05_f64.powi(2)
+        };
+        let [top, below] = Side::both(Vec3::Z);
+        let expect =
+            |found: f64, known: f64| assert!((found - known).abs() < 1e-6, "{found} against {known}");
+        expect(area(&|_| true, top), 8.5);
+        // The back of the bottom faces up too, and is no part of the floor; of the floor's own back nothing is hidden.
+        expect(area(&|_| true, below), 9.0);
+        expect(area(&|_| true, Side { normal: Vec3::Z, back: true }), 0.5);
+        // What is hidden counts where nothing is open.
+        expect(area(&|_| false, top), 9.0);
+        expect(area(&|point| point.p.x > 0.05, Side { normal: Vec3::NEG_Z, back: true }), 4.5 + 4.5);
+    }
+}
