@@ -25,6 +25,8 @@ class Row:
     bytes: int
     speedup: float
     """Seconds of the photon map over those of this."""
+    rms_systematic: float | None = None
+    """Against the converged picture without the noise of photons and gather rays (%), where there are two pictures."""
 
 
 class SceneFigures:
@@ -88,10 +90,18 @@ class SceneFigures:
         name_of_reference = next(name for name, other in self._table3.items() if other == reference)
         seconds = self._seconds(setting)
         speedup = self._seconds(name_of_reference) / seconds
-        return Row(_rms_paper(render, of_reference), self._rms_truth(job), seconds, render.bytes, speedup)
+        rms_paper, rms_truth = _rms_paper(render, of_reference), self._rms_truth(job)
+        return Row(rms_paper, rms_truth, seconds, render.bytes, speedup, self._rms_systematic(job))
 
     def _rms_truth(self, job: Job) -> float:
         return self._truth.rms(self._renders[job].indirect, self._unit(job))
+
+    def _rms_systematic(self, job: Job) -> float | None:
+        twin = self._plan.twins.get(job)
+        if twin is None:
+            return None
+        one, other = (self._renders[each].indirect for each in (job, twin))
+        return self._truth.systematic(one, other, self._unit(job))
 
     def _unit(self, job: Job) -> float:
         return error.peak(self._renders[self._plan.reference(job)].indirect)

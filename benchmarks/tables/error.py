@@ -34,6 +34,18 @@ class Truth:
         square = float(np.mean(to_first * to_second))
         return 100.0 * sqrt(max(square, 0.0)) / unit
 
+    def systematic(self, picture: Picture, other: Picture, unit: float) -> float:
+        """Root mean square of what two pictures of independent noise have wrong alike (% of `unit`).
+
+        Of one picture's error times the other's against the other half, all noise drops out.
+        """
+        one, two = (
+            [half - each.astype(np.float64) for half in (self.first, self.second)]
+            for each in (picture, other)
+        )
+        square = float(np.mean(one[0] * two[1] + one[1] * two[0])) / 2.0
+        return 100.0 * sqrt(max(square, 0.0)) / unit
+
     def noise(self, unit: float) -> float:
         """Noise of the mean of both halves (% of `unit`)."""
         return 100.0 * sqrt(float(np.mean(self._variance()))) / unit / sqrt(2.0)

@@ -13,7 +13,7 @@ Document = dict[str, Any]
 _OURS = (PYRAMID, PYRAMID_2006)
 _TIMES_HEAD = (
     *("method", "photons", "build", "gather", "all"),
-    *("speed-up", "memory", "RMS against photon map", "RMS against truth"),
+    *("speed-up", "memory", "RMS against photon map", "RMS against truth", "without noise"),
 )
 
 
@@ -105,7 +105,7 @@ def _published_times(subject: Subject) -> Iterator[Sequence[str]]:
     for method, seconds, size, error in (of_photon_map, of_pyramid):
         speedup = f"{paper_has.photon_map_seconds / seconds:.1f}"
         name = f"paper, {paper_has.name}: {method}"
-        yield (name, "", "", "", f"{seconds:,.1f} s", speedup, _megabytes(size), _percent(error), "")
+        yield (name, "", "", "", f"{seconds:,.1f} s", speedup, _megabytes(size), _percent(error), "", "")
 
 
 def _times_line(setting: str, row: dict[str, Any], parts: dict[str, Any]) -> Sequence[str]:
@@ -117,6 +117,7 @@ def _times_line(setting: str, row: dict[str, Any], parts: dict[str, Any]) -> Seq
         _megabytes(row["bytes"]),
         _percent(row["rms_paper"]),
         _percent(row["rms_truth"]),
+        _percent(row["rms_systematic"]),
     )
 
 

@@ -13,6 +13,7 @@ OTHERS = ("precomputed_irradiance", "uniform_grid", "reverse_photon_map")
 
 # Any seeds but that of all other renders.
 _TRUTH_SEEDS = (1001, 1002)
+_TWIN_SEED = 1003
 _LEAST_TRUTH_RAYS, _MOST_TRUTH_RAYS = 32, 4096
 # Camera samples of the truth have so many gather rays each.
 _RAYS_PER_TRUTH_SAMPLE = 4
@@ -103,11 +104,13 @@ class ScenePlan:
     """By estimator: pictures as large as the paper's, whose time is measured."""
     truth: tuple[Job, Job]
     """Two independent halves."""
+    twins: dict[Job, Job]
+    """By picture of many rays: the same with other photons and rays, to tell errors from noise."""
 
     def jobs(self) -> Iterator[Job]:
         """Each render once; those of one size follow each other."""
         jobs = [job for table in self.tables.values() for job in table.values()]
-        yield from dict.fromkeys([*self.truth, *jobs, *self.timed.values()])
+        yield from dict.fromkeys([*self.truth, *jobs, *self.twins.values(), *self.timed.values()])
 
     def reference(self, job: Job) -> Job:
         """What a picture of the tables is compared with."""
@@ -144,6 +147,7 @@ def scene_plan(subject: Subject, scale: Scale, photons: Render, path: Render) ->
             for name in (PHOTON_MAP, PYRAMID)
         },
         _truth(subject, scale, path),
+        {job: replace(job, seed=_TWIN_SEED) for job in many.values()},
     )
 
 

@@ -70,7 +70,9 @@ def _bullets(settings: dict[str, Any]) -> Iterator[str]:
     yield f"""
         *Against truth* counts everything, the noise of gather rays and photons too. The truth follows light along
         paths (`gather.estimator=path`) in two independent halves; by using both, its own noise drops out of the
-        error. Table 3 has two rows with {settings["many_rays"]} rays, where the noise of gather rays is smaller.
+        error. Table 3 has two rows with {settings["many_rays"]} rays, where the noise of gather rays is smaller, and
+        what is wrong there *without noise*: of two pictures with other photons and rays, the error of one times
+        that of the other leaves what both have wrong.
     """
 
 

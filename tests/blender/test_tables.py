@@ -54,7 +54,7 @@ def test_the_tables_are_made_and_a_second_run_does_only_what_is_missing(run, tmp
     run()
     results = tmp_path / "results"
     document = json.loads((results / "tables.json").read_text())
-    row_names = {"rms_paper", "rms_truth", "seconds", "bytes", "speedup"}
+    row_names = {"rms_paper", "rms_truth", "seconds", "bytes", "speedup", "rms_systematic"}
     for table in ("table1", "table2", "table3"):
         rows = document[table]["cornell_box"]
         assert all(set(row) == row_names for row in rows.values())

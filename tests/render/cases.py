@@ -153,7 +153,7 @@ MATERIALS: dict[str, Surface] = {
     "translucent": shader("BsdfTranslucent", Color=GOLD),
     "translucent_mix": joined("MixShader", _diffuse, shader("BsdfTranslucent", Color=GOLD), 0.5),
     "holdout_mix": joined("MixShader", _diffuse, shader("Holdout"), 0.4),
-    "sheen": shader("BsdfSheen", Color=GOLD, Roughness=0.7),
+    "sheen": shader("BsdfSheen", Color=(0.8, 0.8, 0.8), Roughness=0.7),
     "emission": shader("Emission", Color=GOLD, Strength=1.5),
     "principled_plastic": shader("BsdfPrincipled", Base_Color=BLUE, Roughness=0.4),
     "principled_matte": shader("BsdfPrincipled", Base_Color=BLUE, Roughness=0.9, Specular_IOR_Level=0.2),

@@ -45,9 +45,9 @@ fn a_library_that_is_not_embree_is_refused() {
 fn impostor(version: [isize; 3]) -> PathBuf {
     const OTHERS: &str = "ReleaseDevice GetDeviceError SetDeviceErrorFunction NewGeometry ReleaseGeometry \
         CommitGeometry SetGeometryMask SetNewGeometryBuffer SetGeometryInstancedScene \
-        SetGeometryTransform NewScene ReleaseScene SetSceneFlags SetSceneBuildQuality AttachGeometryByID \
-        SetSceneProgressMonitorFunction CommitScene GetSceneBounds Intersect1 Occluded1 Intersect16 \
-        Occluded16";
+        SetGeometryTransform SetGeometryTimeStepCount NewScene ReleaseScene SetSceneFlags \
+        SetSceneBuildQuality AttachGeometryByID SetSceneProgressMonitorFunction CommitScene GetSceneBounds \
+        Intersect1 Occluded1 Intersect16 Occluded16";
     let [major, minor, patch] = version;
     let mut source = format!(
         "#![allow(non_snake_case)]
