@@ -18,6 +18,18 @@ class RGPPhotonPassSettings(bpy.types.PropertyGroup):
         soft_min=10_000,
         soft_max=100_000_000,
     )
+    caustic_count: bpy.props.IntProperty(
+        name="Caustic Photons",
+        description=(
+            "Photons sent to mirrors and glass for caustics, where the scene has any; more make them sharper; "
+            "0 leaves out those of small lights"
+        ),
+        default=1_000_000,
+        min=0,
+        max=1_000_000_000,
+        soft_min=10_000,
+        soft_max=100_000_000,
+    )
     max_depth: bpy.props.IntProperty(
         name="Max Depth",
         description="Surfaces a photon may visit before it is dropped; low values darken the picture",

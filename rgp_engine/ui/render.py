@@ -25,7 +25,8 @@ class RGP_PT_photons(EnginePanel, Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        draw_settings(self.layout, context.scene.rgp.photon_pass, "photon_count", "max_depth", "aim")
+        names = ("photon_count", "caustic_count", "max_depth", "aim")
+        draw_settings(self.layout, context.scene.rgp.photon_pass, *names)
 
 
 class RGP_PT_pyramid(EnginePanel, Panel):

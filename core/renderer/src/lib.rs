@@ -4,6 +4,7 @@
 pub mod accel;
 pub mod baseline;
 pub mod bsdf;
+pub mod caustic_map;
 pub mod color;
 pub mod effects_plan;
 pub mod error;
@@ -13,6 +14,7 @@ pub mod gather;
 pub mod light;
 pub mod lit_scene;
 pub mod math;
+pub mod neighbors;
 pub mod photon_pass;
 pub mod progress;
 pub mod pyramid;

@@ -2,6 +2,7 @@
 
 mod aim;
 mod baselines;
+mod caustics;
 mod memory;
 mod surroundings;
 
@@ -19,7 +20,7 @@ use crate::film::Film;
 use crate::gather::{self, Auditor, Gatherer, PyramidLookup, Stop, TraceFloor};
 use crate::light::{Environment, Lights};
 use crate::lit_scene::LitScene;
-use crate::photon_pass::{self, PhotonPilot, PyramidDeposits};
+use crate::photon_pass::{self, Carry, PhotonPass, PhotonPilot, PyramidDeposits};
 use crate::progress::{Progress, Stage};
 use crate::pyramid::{
     Accumulator, DirectionBins, Grid, Layout, NormalClasses, PilotLandings, Pyramid, Reading, SETS,
@@ -68,7 +69,7 @@ pub fn trace_floor(
     let film = Film::new(width, height, &settings.film);
     threads(settings)?.install(|| {
         let lit = light(scene, settings, library, &progress)?;
-        Ok(gather::trace_floor(&Gatherer::new(&lit, &crate::estimator::Path, settings), &film))
+        Ok(gather::trace_floor(&Gatherer::new(&lit, &crate::estimator::Path, None, settings), &film))
     })
 }
 
@@ -148,7 +149,7 @@ impl Work<'_> {
             let grid = grid(lit, self.seen, &landings, settings, resolution);
             Layout::new(grid, classes, &surroundings).ok_or(RenderError::Cancelled)
         };
-        let budget = Budget::new(lit.accel.scene(), settings)?;
+        let budget = Budget::new(lit.accel.scene(), settings)?.less(self.caustic_bytes());
         let (layout, resolution) = budget.fit(wanted, bins, measure)?;
         if resolution < wanted {
             stats.warnings.push(format!("the memory limit allows {resolution} cells instead of {wanted}"));
@@ -183,28 +184,26 @@ impl Work<'_> {
             EstimatorStats { name: "pyramid", bytes: stats.pyramid.bytes, seconds: stats.seconds.pyramid };
         let lookup = |set| PyramidLookup::new(pyramid.view(set), settings.gather.retrace_distance);
         let lookups: [_; SETS] = std::array::from_fn(lookup);
-        let auditor = Auditor::new(lit, &pyramid, settings);
-        let gathered = self.gather(lookups.each_ref(), auditor.as_ref(), stats);
-        if let Some(auditor) = auditor {
-            let [width, height] = self.film.size();
-            let (audit, disagreement) = auditor.result(width * height, self.film.mean());
-            stats.audit = Some(audit);
-            self.film.set_audit(disagreement.picture(lit, settings.render.seed));
-        }
-        gathered
+        self.gather(lookups.each_ref(), Some(&pyramid), stats)
     }
 
     /// Where photons will be plenty, for cells that are finer there.
     fn pilot_landings(&self) -> Result<PilotLandings, RenderError> {
         let Work { lit, settings, progress, .. } = *self;
-        let mut photon_pass = settings.photon_pass.clone();
-        photon_pass.photon_count /= PILOT_SHARE;
-        if settings.pyramid.adaptive_levels == 0 || photon_pass.photon_count == 0 {
+        let count = settings.photon_pass.photon_count / PILOT_SHARE;
+        if settings.pyramid.adaptive_levels == 0 || count == 0 {
             return Ok(PilotLandings::default());
         }
         let landings = PhotonPilot::default();
-        photon_pass::run(lit, &photon_pass, settings.render.seed, 1, &landings, progress)?;
-        let each = settings.photon_pass.photon_count as f64 / photon_pass.photon_count as f64;
+        let pass = PhotonPass {
+            carry: Carry::All,
+            count,
+            max_depth: settings.photon_pass.max_depth,
+            seed: settings.render.seed,
+            sets: 1,
+        };
+        photon_pass::run(lit, pass, &landings, progress)?;
+        let each = settings.photon_pass.photon_count as f64 / count as f64;
         let enough = f64::from(Pyramid::photons_to_divide(settings.pyramid.photons_per_cell));
         Ok(PilotLandings { places: landings.places(), each, enough })
     }
@@ -230,30 +229,43 @@ impl Work<'_> {
     fn photons(&self, sink: &impl PhotonSink, sets: usize, stats: &mut Stats) -> Result<(), RenderError> {
         self.progress.enter(Stage::PhotonPass);
         let clock = Instant::now();
-        let (photon_pass, seed) = (&self.settings.photon_pass, self.settings.render.seed);
-        let counts = photon_pass::run(self.lit, photon_pass, seed, sets, sink, self.progress)?;
+        let (settings, seed) = (&self.settings.photon_pass, self.settings.render.seed);
+        let (count, max_depth) = (settings.photon_count, settings.max_depth);
+        let pass = PhotonPass { carry: Carry::All, count, max_depth, seed, sets };
+        let counts = photon_pass::run(self.lit, pass, sink, self.progress)?;
         stats.photons.emitted = counts.emitted;
-        stats.rays.photon = counts.segments;
+        stats.rays.photon += counts.segments;
         stats.seconds.photon_pass = clock.elapsed().as_secs_f64() + stats.aim.map_or(0.0, |aim| aim.seconds);
         counts.costs.charge(&mut stats.effects, stats.seconds.photon_pass);
         Ok(())
     }
 
-    /// Makes the picture; even and odd passes ask one estimator each.
+    /// Makes the picture; even and odd passes ask one estimator each. What is read from `audited` is checked.
     fn gather<E: Estimator>(
         &self,
         estimators: [&E; SETS],
-        auditor: Option<&Auditor<'_>>,
+        audited: Option<&Pyramid>,
         stats: &mut Stats,
     ) -> Result<(), RenderError> {
+        let Work { lit, settings, .. } = *self;
+        let maps = self.caustics(SETS.min(settings.gather.camera_samples as usize), stats)?;
         self.progress.enter(Stage::Gather);
         let clock = Instant::now();
-        let gatherers =
-            estimators.map(|estimator| Gatherer::new(self.lit, estimator, self.settings).audited(auditor));
+        let auditor = audited.and_then(|pyramid| Auditor::new(lit, pyramid, maps.first(), settings));
+        let gatherers = std::array::from_fn(|half| {
+            let caustics = maps.get(half).or(maps.first());
+            Gatherer::new(lit, estimators[half], caustics, settings).audited(auditor.as_ref())
+        });
         let stop = Stop::new(&self.settings.gather, self.progress.elapsed());
         let gathered = gather::run(&gatherers, self.film, stop, self.progress);
         stats.error = self.film.picture_error();
         stats.seconds.gather = clock.elapsed().as_secs_f64();
+        if let Some(auditor) = &auditor {
+            let [width, height] = self.film.size();
+            let (audit, disagreement) = auditor.result(width * height, self.film.mean());
+            stats.audit = Some(audit);
+            self.film.set_audit(disagreement.picture(lit, settings.render.seed));
+        }
         let gathered = gathered?;
         gathered.costs.charge(&mut stats.effects, stats.seconds.gather);
         stats.rays += gathered.rays;
@@ -282,7 +294,12 @@ fn light<'a>(
     }
     let plan = EffectsPlan::new(scene, &settings.effects, &mut materials, &mut world);
     let emission: Vec<_> = materials.iter().map(PreparedMaterial::emission).collect();
-    let lights = Lights::with_world(scene, &emission, &world, environment);
+    let mut lights = Lights::with_world(scene, &emission, &world, environment);
+    // The reference stays free of photons: it finds caustics as rays do.
+    let by_photons = plan.has_casters && settings.gather.estimator != EstimatorKind::Path;
+    if let Some(casters) = by_photons.then(|| caustics::casters(scene, &materials)).flatten() {
+        lights.map_caustics(casters);
+    }
     let proxies = lights.lamp_proxies();
     let threads = settings.render.threads as usize;
     let accel = Accel::build(scene, &proxies, plan.motion_blur, library, threads, progress)?;

@@ -10,6 +10,8 @@ use crate::error::RenderError;
 pub struct PhotonPassSettings {
     /// Photons emitted.
     pub photon_count: u64,
+    /// Photons for caustics, in scenes that call for them.
+    pub caustic_count: u64,
     /// Surfaces a photon may visit.
     pub max_depth: u32,
     /// Whether photons from suns and the world are aimed at what the picture looks at; Auto: where most would miss it.
@@ -186,7 +188,7 @@ pub struct RenderSettings {
 
 impl Default for PhotonPassSettings {
     fn default() -> Self {
-        Self { photon_count: 1_000_000, max_depth: 64, aim: Switch::Auto }
+        Self { photon_count: 1_000_000, caustic_count: 1_000_000, max_depth: 64, aim: Switch::Auto }
     }
 }
 
@@ -301,6 +303,7 @@ const ESTIMATORS: &[&str] = &[
 #[rustfmt::skip]
 pub const KNOBS: &[Knob] = &[
     knob("photon_pass", "photon_count", int(0, 1_000_000_000), "photons", "Photons emitted by all lights together; more make smoother indirect light"),
+    knob("photon_pass", "caustic_count", int(0, 1_000_000_000), "photons", "Photons sent to mirrors and glass for caustics, where the scene has any; more make them sharper; 0 leaves out those of small lights"),
     knob("photon_pass", "max_depth", int(1, 1000), "surfaces", "Surfaces a photon may visit before it is dropped; low values darken the picture"),
     knob("photon_pass", "aim", SWITCH, "", "Photons of suns and the world go where the picture looks; Auto: where most would miss it"),
     knob("pyramid", "finest_resolution", int(1, 1024), "cells", "Cells of the finest level along the longest side of what the camera and its gather rays see"),

@@ -55,6 +55,8 @@ pub struct PhotonCounts {
     pub deposited: u64,
     /// Landings that found no cell: rounding at slivers, or a flux that was not a number.
     pub lost: u64,
+    /// Landings in the caustic map.
+    pub caustic: u64,
 }
 
 /// How photons from suns and the world were aimed.

@@ -14,9 +14,6 @@
 //!
 //! The estimator `path`, which has no structure, audits the product too: [`crate::estimator::Path`].
 
-mod kd_tree;
-mod nearest;
-mod octahedral;
 mod photon_map;
 mod photon_store;
 mod precomputed_irradiance;
@@ -30,10 +27,3 @@ pub use precomputed_irradiance::PrecomputedIrradiance;
 pub use pyramid_2006::Pyramid2006;
 pub use reverse_photon_map::ReversePhotonMap;
 pub use uniform_grid::UniformGrid;
-
-/// Points in the cube about the origin with edges of one, for tests.
-#[cfg(test)]
-fn cloud(count: usize, seed: u64) -> Vec<glam::Vec3> {
-    let mut rng = crate::sampling::Rng::new(seed);
-    (0..count).map(|_| glam::Vec3::new(rng.draw(), rng.draw(), rng.draw()) - 0.5).collect()
-}

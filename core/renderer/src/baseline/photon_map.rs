@@ -9,15 +9,13 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 
-use super::kd_tree::KdTree;
-use super::nearest::Nearest;
-use super::octahedral::Octahedral;
 use super::photon_store::{Photon, Photons};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
 use crate::lit_scene::Surface;
 use crate::math::Side;
+use crate::neighbors::{KdTree, Nearest, Octahedral};
 use crate::sampling::Rng;
 
 /// Photons farther away than this are never near (scene units: the scene is one wide).

@@ -4,11 +4,11 @@ use std::sync::{Mutex, PoisonError};
 
 use glam::Vec3;
 
-use super::octahedral::Octahedral;
 use crate::bsdf::Bsdf;
 use crate::color::Rgb;
 use crate::estimator::{Landing, PhotonSink};
 use crate::lit_scene::LitScene;
+use crate::neighbors::Octahedral;
 
 /// A photon where it landed: 40 bytes, of which each baseline keeps what it needs.
 #[derive(Clone, Copy, Debug)]

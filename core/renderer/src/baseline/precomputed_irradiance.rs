@@ -4,13 +4,12 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::kd_tree::{KdTree, Visitor};
-use super::octahedral::Octahedral;
 use super::photon_map::PhotonMap;
 use super::photon_store::{Photon, Photons};
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
 use crate::math::Side;
+use crate::neighbors::{KdTree, Octahedral, Visitor};
 
 /// Of this many photons one has an irradiance.
 const SHARE: usize = 4;

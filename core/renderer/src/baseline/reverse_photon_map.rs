@@ -11,12 +11,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::kd_tree::LEAF;
 use super::photon_map::PhotonMap;
 use super::photon_store::Photons;
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint};
 use crate::math::Side;
+use crate::neighbors::LEAF;
 
 /// Hits that are not split any more.
 const HITS: usize = 32;

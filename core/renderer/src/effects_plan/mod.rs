@@ -80,7 +80,7 @@ impl Effect {
     #[must_use]
     pub const fn pass(self) -> &'static str {
         match self {
-            Self::DirectLight | Self::Caustics | Self::DepthOfField => "gather",
+            Self::DirectLight | Self::DepthOfField => "gather",
             _ => "photon_pass, gather",
         }
     }
@@ -164,6 +164,8 @@ pub struct EffectsPlan {
     pub transparency: bool,
     /// Camera rays pass through the lens.
     pub depth_of_field: bool,
+    /// Caustics that the eye sees are called for, whether they are computed or not.
+    pub has_casters: bool,
     /// Rays have times, and things are where they are then.
     pub motion_blur: bool,
     /// Gather rays have something to find.
@@ -195,6 +197,7 @@ impl EffectsPlan {
             direct: computed(Effect::DirectLight),
             light_samples,
             caustics: computed(Effect::Caustics),
+            has_casters: planned[Effect::Caustics as usize].because.is_some(),
             reads,
             transparency: computed(Effect::AlphaTransparency),
             depth_of_field: computed(Effect::DepthOfField),

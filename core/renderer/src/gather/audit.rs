@@ -6,12 +6,14 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use super::caustics::Mapped;
 use super::deferred::{Target, Traces};
 use super::disagreement::{Disagreement, Hits};
 use super::path::Sampled;
 use super::vertex::GatherRay;
 use super::{Gatherer, PyramidLookup, Shares, Width};
 use crate::accel::{Hit, LANES, Ray};
+use crate::caustic_map::CausticMap;
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint, Path};
 use crate::lit_scene::LitScene;
@@ -58,10 +60,15 @@ struct Sums {
 impl<'a> Auditor<'a> {
     /// An auditor of the look-ups in `pyramid`; `None` where the settings want none.
     #[must_use]
-    pub fn new(lit: &'a LitScene<'a>, pyramid: &'a Pyramid, settings: &RenderSettings) -> Option<Self> {
+    pub fn new(
+        lit: &'a LitScene<'a>,
+        pyramid: &'a Pyramid,
+        caustics: Option<&'a CausticMap>,
+        settings: &RenderSettings,
+    ) -> Option<Self> {
         let packets = u64::from(settings.gather.audit).div_ceil(LANES as u64);
         (packets > 0 && lit.plan.follows()).then(|| Self {
-            follower: Gatherer::new(lit, &Path, settings),
+            follower: Gatherer::new(lit, &Path, caustics, settings),
             pyramid,
             lookup: PyramidLookup::new(pyramid.view(0), settings.gather.retrace_distance),
             packets,
@@ -82,10 +89,10 @@ impl<'a> Auditor<'a> {
     #[inline(never)]
     pub(super) fn follow(
         &self,
-        ray: Ray,
-        hit: Hit,
+        (ray, hit): (Ray, Hit),
         gather_ray: &GatherRay,
         solid_angle: f32,
+        mapped: Mapped,
         read: Rgb,
         key: u64,
     ) -> AuditedHit {
@@ -100,6 +107,7 @@ impl<'a> Auditor<'a> {
             light: None,
             lit_side: None,
             width,
+            mapped: Rgb::WHITE,
         };
         let met = g.meet(ray, Some(Some(hit)), sampled, &mut rng, &mut traces.meter, &mut end);
         let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };
@@ -109,7 +117,8 @@ impl<'a> Auditor<'a> {
             self.lookup.place(surface.p, surface.bsdf.frame.side(), surface.bsdf.wo(), footprint)
         });
         let target = Target { traces: &mut traces, lane: 0, weight: Rgb::WHITE };
-        let found = gather_ray.weight * met.through * g.outgoing(&mut end, footprint, &mut rng, target);
+        let found =
+            gather_ray.weight * met.through * g.outgoing(&mut end, footprint, mapped, &mut rng, target);
         AuditedHit { place, read: read.mean(), found: found.mean() }
     }
 

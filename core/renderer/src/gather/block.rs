@@ -33,23 +33,23 @@ const LAMP_SEED: u32 = 0x9E37_79B1;
 
 /// Work on one block of pixels.
 pub(super) struct Block<'a, 'g, E: Estimator> {
-    gatherer: &'g Gatherer<'a, E>,
+    pub(super) gatherer: &'g Gatherer<'a, E>,
     /// Number of the camera sample.
     sample: u32,
     keys: [u64; LANES],
     seeds: PixelSeeds<LANES>,
     /// Camera samples on constant Lambert surfaces, and on all others.
-    lambert: LambertLanes,
-    vertices: [Option<Box<Vertex<'a>>>; LANES],
+    pub(super) lambert: LambertLanes,
+    pub(super) vertices: [Option<Box<Vertex<'a>>>; LANES],
     /// Whether there are such others.
     has_vertices: bool,
-    samples: [PixelSample; LANES],
-    packet: Packet,
+    pub(super) samples: [PixelSample; LANES],
+    pub(super) packet: Packet,
     /// How far from the lens each camera ray starts.
     start: [f32; LANES],
     /// Of the packet: gather rays that did not start on a constant Lambert surface.
     others: [Option<GatherRay>; LANES],
-    traces: Traces<E::Place>,
+    pub(super) traces: Traces<E::Place>,
 }
 
 impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
@@ -85,6 +85,9 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         self.start(x, y);
         if self.lambert.any() || self.has_vertices {
             self.light();
+            if self.gatherer.caustics.is_some() {
+                self.read_caustics();
+            }
             self.gather();
         }
         self.traces.meter.end();
@@ -189,8 +192,15 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let g = self.gatherer;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.sample) << 16 | 1));
         let (kind, width) = (visibility::CAMERA, g.camera_width.after(self.start[lane]));
-        let mut sampled =
-            Sampled { pdf: None, shares: Shares::EVEN, kind, light: None, lit_side: None, width };
+        let mut sampled = Sampled {
+            pdf: None,
+            shares: Shares::EVEN,
+            kind,
+            light: None,
+            lit_side: None,
+            width,
+            mapped: Rgb::WHITE,
+        };
         let owner = self.traces.meter.owner();
         let (mut first, mut throughput) = (Some(hit), Rgb::WHITE);
         let transparent_film = g.lit.accel.scene().world.film_transparent;
@@ -438,7 +448,9 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let solid_angle = gather_ray.pdf.map_or(0.0, |pdf| g.solid_angle(pdf));
         let read = self.samples[lane].indirect - before;
         let key = hash(self.keys[lane], u64::from(index) << 16 | 6);
-        let audited = auditor.follow(self.packet.ray(lane), hit, &gather_ray, solid_angle, read, key);
+        let mapped = self.share_of_mapped(lane, &gather_ray);
+        let audited =
+            auditor.follow((self.packet.ray(lane), hit), &gather_ray, solid_angle, mapped, read, key);
         self.traces.audited.push(audited);
     }
 
@@ -461,8 +473,10 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         if end.is_some() && g.lit.plan.follows() {
             let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };
             let weight = gather_ray.weight * met.through;
+            let mapped = self.share_of_mapped(lane, gather_ray);
             let target = Target { traces: &mut self.traces, lane, weight };
-            self.samples[lane].indirect += weight * g.outgoing(&mut end, footprint, &mut rng, target);
+            let radiance = g.outgoing(&mut end, footprint, mapped, &mut rng, target);
+            self.samples[lane].indirect += weight * radiance;
         }
     }
 
@@ -479,6 +493,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             light: self.gatherer.lit.plan.direct.then_some(Effect::DirectLight),
             lit_side,
             width: Width::of_solid_angle(solid_angle),
+            mapped: Rgb::WHITE,
         }
     }
 

@@ -10,6 +10,7 @@
 mod audit;
 mod block;
 mod camera;
+mod caustics;
 mod convergence;
 mod deferred;
 mod direct;
@@ -30,6 +31,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::accel::Hit;
 use crate::bsdf::{LobeSet, PreparedMaterial, Varying};
+use crate::caustic_map::CausticMap;
 use crate::color::Rgb;
 use crate::effects_plan::Costs;
 use crate::error::RenderError;
@@ -60,6 +62,8 @@ pub use stop::Stop;
 pub struct Gatherer<'a, E> {
     lit: &'a LitScene<'a>,
     estimator: &'a E,
+    /// Caustics of the photons it reads.
+    caustics: Option<&'a CausticMap>,
     seed: u32,
     camera_samples: u32,
     light_samples: u32,
@@ -132,9 +136,15 @@ impl Width {
 }
 
 impl<'a, E: Estimator> Gatherer<'a, E> {
-    /// Prepares a gather whose rays are answered by `estimator`.
+    /// Prepares a gather whose rays are answered by `estimator`; `caustics` are those of lights whose caustics are made of
+    /// photons.
     #[must_use]
-    pub fn new(lit: &'a LitScene<'a>, estimator: &'a E, settings: &RenderSettings) -> Self {
+    pub fn new(
+        lit: &'a LitScene<'a>,
+        estimator: &'a E,
+        caustics: Option<&'a CausticMap>,
+        settings: &RenderSettings,
+    ) -> Self {
         let gather = &settings.gather;
         let seed = settings.render.seed;
         let set = |count: u32, salt: u64| StratifiedSet::new(count, hash(u64::from(seed), salt) as u32);
@@ -151,6 +161,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         Self {
             lit,
             estimator,
+            caustics,
             seed,
             camera_samples: gather.camera_samples,
             light_samples: gather.light_samples,

@@ -10,11 +10,12 @@ use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::effects_plan::{Effect, Meter};
 use crate::estimator::{Estimator, Footprint};
-use crate::light::Receiver;
-use crate::lit_scene::{Surface, ray_kind};
+use crate::light::{Receiver, Sight};
+use crate::lit_scene::{Surface, lobes_lit, ray_kind};
 use crate::sampling::Rng;
 use crate::scene::visibility;
 
+use super::caustics::{Mapped, with_read};
 use super::deferred::{Target, Traces};
 use super::direct::{Shares, shadow_ray, transmittance};
 use super::{Gatherer, Width};
@@ -40,9 +41,15 @@ pub(super) struct Sampled {
     pub(super) lit_side: Option<Vec3>,
     /// How wide the ray is.
     pub(super) width: Width,
+    /// What lights count whose caustics are made of photons.
+    pub(super) mapped: Rgb,
 }
 
 impl Sampled {
+    fn sight(&self) -> Sight {
+        Sight { kind: self.kind, mapped: self.mapped }
+    }
+
     fn weight(&self, pdf_light: f32) -> f32 {
         self.pdf.map_or(1.0, |pdf| self.shares.of_bsdf(pdf, pdf_light))
     }
@@ -112,7 +119,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             if !surface.bsdf.emission.is_black() && !is_hole {
                 let owner = meter.enter(Effect::EmissiveMeshes);
                 let pdf = lit.emitter_pdf(from, &ray, &hit, met.distance);
-                met.light += met.through * surface.bsdf.emission * sampled.weight(pdf);
+                let share = lit.lights.share_of_mesh(hit.object, sampled.sight());
+                met.light += met.through * surface.bsdf.emission * share * sampled.weight(pdf);
                 meter.back(owner);
             }
             let transparency = surface.bsdf.transparency;
@@ -152,7 +160,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         let mut light = Rgb::BLACK;
         let owner = meter.enter_if(sampled.light);
         let lights = &self.lit.lights;
-        lights.lamps_crossed(from, ray.direction, travelled..until, sampled.kind, &mut |radiance, pdf| {
+        lights.lamps_crossed(from, ray.direction, travelled..until, sampled.sight(), &mut |radiance, pdf| {
             light += radiance * sampled.weight(pdf);
         });
         meter.back(owner);
@@ -161,9 +169,9 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
 
     /// Light from outside the scene.
     fn escaped(&self, from: Receiver, direction: Vec3, sampled: Sampled) -> Rgb {
-        let (world, pdf) = self.lit.lights.world_seen(from, direction, sampled.kind);
+        let (world, pdf) = self.lit.lights.world_seen(from, direction, sampled.sight());
         let mut light = world * sampled.weight(pdf);
-        self.lit.lights.suns(from, direction, sampled.kind, &mut |radiance, pdf| {
+        self.lit.lights.suns(from, direction, sampled.sight(), &mut |radiance, pdf| {
             light += radiance * sampled.weight(pdf);
         });
         light
@@ -175,6 +183,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         &self,
         end: &mut Option<Surface<'a>>,
         mut footprint: Footprint,
+        mut mapped: Mapped,
         rng: &mut Rng,
         mut target: Target<'_, E::Place>,
     ) -> Rgb {
@@ -192,6 +201,9 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 }
                 None => {
                     target.traces.rays.retraced += 1;
+                    if mapped.is_sharp {
+                        radiance += throughput * self.caustics_at(surface, &mut target.traces.meter);
+                    }
                     LobeSet::ALL
                 }
             };
@@ -204,21 +216,16 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 let replaces = lobes.intersects(LobeSet::READ);
                 let effect = if replaces { Some(self.lit.plan.indirect_owner()) } else { light };
                 let before = target.traces.meter.enter_if(effect);
-                radiance += throughput * self.one_light(surface, lobes, counted, rng, target.traces);
+                radiance +=
+                    throughput * self.one_light(surface, [lobes, counted], mapped.share, rng, target.traces);
                 target.traces.meter.back(before);
             }
             let sample = surface.bsdf.sample(rng.draw(), rng.draw2(), lobes, TransportMode::Radiance);
             let Some(sample) = sample else { break };
+            let on_the_way = mapped.follow(&surface.bsdf, &sample, lobes);
             throughput *= sample.weight;
-            let most = throughput.max_channel();
-            if most < ROULETTE_BELOW || depth > 8 {
-                let survival = most.min(0.95);
-                if rng.draw() >= survival {
-                    break;
-                }
-                throughput = throughput * (1.0 / survival);
-            }
-            if !self.pass(&mut light, sample.class, &mut target.traces.meter) {
+            let survives = survives(&mut throughput, depth, rng);
+            if !survives || !self.pass(&mut light, sample.class, &mut target.traces.meter) {
                 break;
             }
             let kind = ray_kind(&sample);
@@ -235,7 +242,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             }
             let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
             let lit_side = surface.bsdf.lit_side();
-            let sampled = Sampled { pdf, shares: Shares::EVEN, kind, light, lit_side, width: Width::NONE };
+            let (shares, width) = (Shares::EVEN, Width::NONE);
+            let sampled = Sampled { pdf, shares, kind, light, lit_side, width, mapped: on_the_way };
             let met = self.meet(ray, Some(hit), sampled, rng, &mut target.traces.meter, end);
             if light.is_some() {
                 radiance += throughput * met.light;
@@ -292,12 +300,13 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
     }
 
     /// Direct light at a vertex that is followed: one light sample against one direction of the BSDF, drawn from `lobes`. Of
-    /// these the light of the `counted` ones is wanted.
+    /// these the light of the `counted` ones is wanted; what sharp ones reflect of a light in the caustic map counts as
+    /// `mapped` says.
     fn one_light(
         &self,
         surface: &Surface<'_>,
-        lobes: LobeSet,
-        counted: LobeSet,
+        [lobes, counted]: [LobeSet; 2],
+        mapped: Rgb,
         rng: &mut Rng,
         traces: &mut Traces<E::Place>,
     ) -> Rgb {
@@ -308,9 +317,32 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         if !surface.bsdf.has(counted) {
             return Rgb::BLACK;
         }
-        let sample = self.lit.sample_direct(surface.receiver(), u, surface.time);
-        let shadow = sample.and_then(|sample| shadow_ray(surface, &sample, lobes, counted, Shares::EVEN));
-        let Some(shadow) = shadow else { return Rgb::BLACK };
-        shadow.radiance * transmittance(self.lit, &shadow, traces)
+        let Some(sample) = self.lit.sample_direct(surface.receiver(), u, surface.time) else {
+            return Rgb::BLACK;
+        };
+        let Some(shadow) = shadow_ray(surface, &sample, lobes, counted, Shares::EVEN) else {
+            return Rgb::BLACK;
+        };
+        let radiance = if sample.is_mapped {
+            let lit = counted.and(lobes_lit(sample.visibility));
+            shadow.radiance * with_read(mapped, &surface.bsdf, sample.wi, lit)
+        } else {
+            shadow.radiance
+        };
+        radiance * transmittance(self.lit, &shadow, traces)
     }
+}
+
+/// Russian roulette: false where the path ends.
+fn survives(throughput: &mut Rgb, depth: u32, rng: &mut Rng) -> bool {
+    let most = throughput.max_channel();
+    if most >= ROULETTE_BELOW && depth <= 8 {
+        return true;
+    }
+    let survival = most.min(0.95);
+    if rng.draw() >= survival {
+        return false;
+    }
+    *throughput = *throughput * (1.0 / survival);
+    true
 }

@@ -186,6 +186,19 @@ impl AreaLamp {
         }
     }
 
+    /// Density per solid angle with which photons leave at an angle of this cosine to the axis.
+    pub(super) fn density(&self, cos: f32) -> f32 {
+        if cos <= 0.0 {
+            return 0.0;
+        }
+        self.spread.attenuation((1.0 - cos * cos).max(0.0).sqrt() / cos) * cos * FRAC_1_PI
+    }
+
+    /// Of the shining side (square scene units).
+    pub(super) fn area(&self) -> f32 {
+        self.area
+    }
+
     /// Foot of the perpendicular from `p` in the lamp's axes, and height above the shining side.
     fn local(&self, p: Vec3) -> (Vec2, f32) {
         let v = p - self.center;

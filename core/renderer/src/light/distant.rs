@@ -38,6 +38,11 @@ impl SceneBall {
         warp::from_disk(across / self.radius.max(f32::MIN_POSITIVE))
     }
 
+    /// Where a line through `p` crosses the disk that photons of its direction start from.
+    pub(super) fn entered(&self, p: Vec3, direction: Vec3) -> Vec3 {
+        p - direction * ((p - self.center).dot(direction) + self.radius)
+    }
+
     /// A photon that travels along `direction` through a place uniform over the disk.
     pub(super) fn photon(&self, direction: Vec3, flux: Rgb, u: [f32; 2]) -> Photon {
         let across = warp::disk(u) * self.radius;

@@ -116,6 +116,11 @@ impl MeshEmitter {
         })
     }
 
+    /// Half the area of its triangles, what they cover on average as seen from all sides if none hides another.
+    pub(super) fn mean_shadow(&self) -> f32 {
+        (0..self.triangles.len()).map(|which| 0.5 * self.triangle(which).area).sum()
+    }
+
     /// Which of the emitting triangles triangle `primitive` of the mesh is.
     pub(super) fn which(&self, primitive: u32) -> Option<usize> {
         self.triangles.binary_search(&primitive).ok()

@@ -32,6 +32,8 @@ pub struct Environment {
     table: DirectionTable,
     /// Irradiance from all sides (W·m⁻²): the integral of the radiance over all directions.
     fluence: Rgb,
+    /// The solid angle (sr) that would hold all of it, were it as bright as it is on average where light comes from.
+    solid_angle: f32,
     /// Ray kinds whose light is sampled; other rays meet it by themselves.
     sampled: u32,
 }
@@ -46,12 +48,17 @@ impl Environment {
         let cells = Survey { program: &program, textures }.cells(columns);
         let area = |i: usize| direction_table::row_area(i / columns, rows) / columns as f32;
         let fluence = cells.iter().enumerate().map(|(i, &cell)| cell * area(i)).sum();
+        let sums = cells.iter().enumerate().fold([0.0_f64; 2], |[one, two], (i, cell)| {
+            let (value, area) = (f64::from(cell.mean()), f64::from(area(i)));
+            [one + value * area, two + value * value * area]
+        });
         let weights: Vec<f32> = cells.iter().map(|cell| cell.mean()).collect();
         let table = DirectionTable::new(columns, &weights)?;
         let sees_as_diffuse = if program.program.asks(&ASKS_KIND) { visibility::DIFFUSE } else { u32::MAX };
         Some(Self {
             table,
             fluence,
+            solid_angle: (sums[0] * sums[0] / sums[1]) as f32,
             sampled: world.visibility & sees_as_diffuse & !visibility::CAMERA,
             textures: Arc::clone(textures),
             program,
@@ -67,6 +74,11 @@ impl Environment {
     /// Integral of the radiance over all directions (W·m⁻²).
     pub(super) fn fluence(&self) -> Rgb {
         self.fluence
+    }
+
+    /// See the field.
+    pub(super) fn solid_angle(&self) -> f32 {
+        self.solid_angle
     }
 
     /// Ray kinds whose light [`Environment::sample`] finds.

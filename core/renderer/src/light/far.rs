@@ -4,6 +4,7 @@
 use glam::Vec3;
 
 use super::aim::{Aim, Find};
+use super::caustic::Sight;
 use super::select::Cdf;
 use super::shape::Shape;
 use super::{DirectSample, Lights, Receiver};
@@ -13,10 +14,11 @@ impl Lights {
     /// What a ray that leaves the scene sees of the world, suns aside, and the pdf per solid angle with which
     /// [`Lights::sample_direct`] from `from` finds this direction: 0 where it never does.
     #[must_use]
-    pub fn world_seen(&self, from: impl Into<Receiver>, wi: Vec3, ray_kind_bit: u32) -> (Rgb, f32) {
-        let sampled = self.world.sampled().filter(|sampled| sampled.sampled() & ray_kind_bit != 0);
+    pub fn world_seen(&self, from: impl Into<Receiver>, wi: Vec3, sight: impl Into<Sight>) -> (Rgb, f32) {
+        let sight = sight.into();
+        let sampled = self.world.sampled().filter(|sampled| sampled.sampled() & sight.kind != 0);
         let pdf = sampled.map_or(0.0, |sampled| sampled.pdf(wi) * self.world_share(&from.into()));
-        (self.world.seen(wi, ray_kind_bit), pdf)
+        (self.world.seen(wi, sight.kind) * self.share(self.lights.len(), sight), pdf)
     }
 
     /// Probability with which the world is sampled and not another light: its share of the irradiance, about.
@@ -45,6 +47,7 @@ impl Lights {
             casts_shadow: true,
             visibility: environment.sampled(),
             point: None,
+            is_mapped: self.is_mapped(self.lights.len()),
         })
     }
 

@@ -6,12 +6,15 @@
 
 mod aim;
 mod area;
+mod casters;
+mod caustic;
 mod cluster;
 mod direction_table;
 mod distant;
 mod emitter;
 mod environment;
 mod far;
+mod met;
 mod point;
 mod proxy;
 mod select;
@@ -32,6 +35,9 @@ use crate::color::Rgb;
 use crate::scene::{Scene, World};
 use aim::Aim;
 pub use aim::Find;
+pub use casters::Casters;
+use caustic::CausticLights;
+pub use caustic::Sight;
 use cluster::Cluster;
 use distant::SceneBall;
 pub use emitter::EmitterPoint;
@@ -74,6 +80,14 @@ pub struct Emission {
     pub point: Option<EmitterPoint>,
 }
 
+impl Emission {
+    /// That of a choice with this density.
+    fn over(self, density: f32) -> Self {
+        let point = self.point.map(|point| point.chosen_with(density));
+        Self { flux: self.flux / density, point, ..self }
+    }
+}
+
 /// Where light is asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
@@ -107,6 +121,8 @@ pub struct DirectSample {
     pub casts_shadow: bool,
     /// Ray kinds that see the light: lobes of other kinds are not lit by it.
     pub visibility: u32,
+    /// Its caustics are made of photons.
+    pub is_mapped: bool,
     /// Where on an emissive mesh it is.
     pub point: Option<EmitterPoint>,
 }
@@ -177,6 +193,8 @@ pub struct Lights {
     /// How the photons of each of them are aimed.
     aims: Vec<Option<Aim>>,
     total_flux: Rgb,
+    /// Lights whose caustics are made of photons.
+    caustic: Option<CausticLights>,
 }
 
 impl Lights {
@@ -238,6 +256,7 @@ impl Lights {
             aims: vec![None; means.len()],
             photon_weights: means,
             total_flux: fluxes.into_iter().sum(),
+            caustic: None,
         }
     }
 
@@ -302,8 +321,7 @@ impl Lights {
         let [choice, numbers @ ..] = u;
         let chosen = self.by_weight.as_ref()?.choose(choice);
         let emission = self.emission(chosen.index, chosen.rest, numbers);
-        let point = emission.point.map(|point| point.chosen_with(chosen.probability));
-        Some(Emission { flux: emission.flux / chosen.probability, point, ..emission })
+        Some(emission.over(chosen.probability))
     }
 
     /// A photon of one light, which is then not chosen: its flux is that of the light. Lights are numbered as by
@@ -315,7 +333,12 @@ impl Lights {
 
     /// `choice` is for lights of many parts.
     fn emission(&self, index: usize, choice: f32, numbers: [f32; 4]) -> Emission {
-        let (numbers, density) = self.aims[index].as_ref().map_or((numbers, 1.0), |aim| aim.warp(numbers));
+        let Some(aim) = &self.aims[index] else { return self.unaimed(index, choice, numbers) };
+        let (numbers, density) = aim.warp(numbers);
+        self.unaimed(index, choice, numbers).over(density)
+    }
+
+    fn unaimed(&self, index: usize, choice: f32, numbers: [f32; 4]) -> Emission {
         let [x, y, d0, d1] = numbers;
         let (position, direction) = ([x, y], [d0, d1]);
         let light = self.lights.get(index);
@@ -329,7 +352,7 @@ impl Lights {
         Emission {
             origin: photon.origin,
             direction: photon.direction,
-            flux: photon.flux / density,
+            flux: photon.flux,
             normal: photon.normal,
             lit_from: photon.lit_from,
             casts_shadow: light.is_none_or(|light| light.casts_shadow),
@@ -370,86 +393,9 @@ impl Lights {
             is_delta: sample.is_delta || !light.casts_shadow,
             casts_shadow: light.casts_shadow,
             visibility: light.visibility,
+            is_mapped: self.is_mapped(emitter.light as usize),
             point: sample.point.map(|point| point.chosen_with(chosen.probability)),
         })
-    }
-
-    /// Pdf per solid angle with which [`Lights::sample_direct`] from `from` finds the direction `wi`, whose ray meets
-    /// triangle `primitive` of `object` at distance `t`. 0 where the triangle does not emit.
-    #[must_use]
-    pub fn emitter_pdf(
-        &self,
-        from: impl Into<Receiver>,
-        object: u32,
-        primitive: u32,
-        wi: Vec3,
-        t: f32,
-    ) -> f32 {
-        let Some(index) = self.light_of_object.get(object as usize).copied().flatten() else { return 0.0 };
-        let Shape::Mesh(mesh) = &self.lights[index].shape else { return 0.0 };
-        let Some(which) = mesh.which(primitive) else { return 0.0 };
-        let emitter = self.first_emitter[index] + which;
-        mesh.triangle(which).pdf(wi, t) * self.choice_probability(&from.into(), emitter)
-    }
-
-    /// Probability with which [`Lights::sample_direct`] from `from` chooses triangle `primitive` of `object`.
-    #[must_use]
-    pub fn emitter_choice(&self, from: Receiver, object: u32, primitive: u32) -> f32 {
-        let Some(index) = self.light_of_object.get(object as usize).copied().flatten() else { return 0.0 };
-        let Shape::Mesh(mesh) = &self.lights[index].shape else { return 0.0 };
-        let which = mesh.which(primitive);
-        which.map_or(0.0, |which| self.choice_probability(&from, self.first_emitter[index] + which))
-    }
-
-    /// Calls back, for each lamp the ray meets at a distance in `span`, with its radiance and the pdf per solid angle
-    /// with which [`Lights::sample_direct`] from `from` finds this direction. Lamps do not block. Those hidden from the
-    /// ray's kind (one bit of [`crate::scene::visibility`]) are skipped, as are suns and what `is_delta` stands for.
-    pub fn lamps_crossed(
-        &self,
-        from: impl Into<Receiver>,
-        wi: Vec3,
-        span: Range<f32>,
-        ray_kind_bit: u32,
-        each: &mut dyn FnMut(Rgb, f32),
-    ) {
-        let receiver = from.into();
-        let ray = Ray { from: receiver.p, wi, span };
-        for (index, light) in self.lights.iter().enumerate() {
-            if light.visibility & ray_kind_bit == 0 || !light.can_be_met() {
-                continue;
-            }
-            let crossing = match &light.shape {
-                Shape::Point(lamp) => lamp.crossing(&ray),
-                Shape::Area(lamp) => lamp.crossing(&ray),
-                Shape::Sun(_) | Shape::Mesh(_) => None,
-            };
-            if let Some(crossing) = crossing {
-                let emitter = self.first_emitter[index];
-                each(crossing.radiance, crossing.pdf * self.choice_probability(&receiver, emitter));
-            }
-        }
-    }
-
-    /// As [`Lights::lamps_crossed`], for the suns a ray that leaves the scene sees.
-    pub fn suns(
-        &self,
-        from: impl Into<Receiver>,
-        wi: Vec3,
-        ray_kind_bit: u32,
-        each: &mut dyn FnMut(Rgb, f32),
-    ) {
-        let receiver = from.into();
-        for &index in &self.suns {
-            let light = &self.lights[index];
-            let Shape::Sun(lamp) = &light.shape else { continue };
-            if light.visibility & ray_kind_bit == 0 {
-                continue;
-            }
-            if let Some(crossing) = lamp.crossing(wi) {
-                let emitter = self.first_emitter[index];
-                each(crossing.radiance, crossing.pdf * self.choice_probability(&receiver, emitter));
-            }
-        }
     }
 
     /// The emitter that `u` in 0..1 chooses to light the receiver.

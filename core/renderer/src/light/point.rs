@@ -144,6 +144,11 @@ impl PointLamp {
                 (direction, self.intensity * solid_angle)
             }
         };
+        Photon { flux, ..self.leaving(direction, position) }
+    }
+
+    /// A photon in a direction; it carries the lamp's whole flux.
+    pub(super) fn leaving(&self, direction: Vec3, position: [f32; 2]) -> Photon {
         let across = warp::disk(position) * self.radius;
         let h_squared = across.length_squared();
         let half_chord = (self.radius * self.radius - h_squared).max(0.0).sqrt();
@@ -154,7 +159,17 @@ impl PointLamp {
             (true, true) => (closest, h_squared / half_chord),
             (true, false) => (closest, f32::INFINITY),
         };
-        Photon { origin, direction, flux, normal: None, lit_from, point: None }
+        Photon { origin, direction, flux: self.flux(), normal: None, lit_from, point: None }
+    }
+
+    /// Density per solid angle with which photons leave in a direction.
+    pub(super) fn density(&self, direction: Vec3) -> f32 {
+        self.cone.map_or(0.25 * FRAC_1_PI, |cone| cone.attenuation(direction) / cone.solid_angle())
+    }
+
+    /// Center, and the radius about it (scene units) within which all its light leaves.
+    pub(super) fn middle_and_radius(&self) -> (Vec3, f32) {
+        (self.center, self.radius)
     }
 
     fn attenuation(&self, direction: Vec3) -> f32 {

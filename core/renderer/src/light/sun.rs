@@ -51,6 +51,11 @@ impl SunLamp {
         self.irradiance * (beams * ball.disk_area())
     }
 
+    /// Of its disk (sr).
+    pub(super) fn solid_angle(&self) -> f32 {
+        TAU * self.cone
+    }
+
     /// Where its light comes from.
     pub(super) fn bounds(&self) -> Bounds {
         let sin = (self.cone * (2.0 - self.cone)).max(0.0).sqrt();

@@ -14,7 +14,17 @@ impl LitScene<'_> {
     #[inline]
     #[must_use]
     pub fn emit(&self, u: [f32; 5], time: f32) -> Option<Emission> {
-        let mut emission = self.lights.emit(u)?;
+        self.lights.emit(u).map(|emission| self.exact(emission, time))
+    }
+
+    /// See [`crate::light::Lights::emit_to_casters`]; at a time while the shutter is open.
+    #[must_use]
+    pub fn emit_to_casters(&self, u: [f32; 6], time: f32) -> Option<Emission> {
+        self.lights.emit_to_casters(u).map(|emission| self.exact(emission, time))
+    }
+
+    #[inline]
+    fn exact(&self, mut emission: Emission, time: f32) -> Emission {
         if let Some(point) = emission.point.filter(|point| self.moves(point.object)) {
             emission = self.moved_emission(emission, point, time);
         }
@@ -22,7 +32,7 @@ impl LitScene<'_> {
             let radiance = self.radiance(&point, emission.origin, emission.direction, time);
             emission.flux = radiance * point.per_radiance;
         }
-        Some(emission)
+        emission
     }
 
     /// See [`crate::light::Lights::sample_direct`]; at a time while the shutter is open.

@@ -2,7 +2,8 @@
 //!
 //! N photons start with the flux Φᵢ / N, chosen by power. Wherever a photon lands on a diffuse or glossy surface its flux
 //! (before the surface's albedo) is deposited: Σ flux / area estimates the irradiance, direct and indirect, caustics
-//! included (Jensen 1996). Roulette is unbiased; depth is cut only as a safeguard.
+//! included (Jensen 1996). Photons for caustics are a pass of their own: they leave towards mirrors and glass, go from one to
+//! the next, and are kept where they then land on anything else. Roulette is unbiased; depth is cut only as a safeguard.
 
 mod deposit;
 mod pilot;
@@ -24,7 +25,6 @@ use crate::progress::Progress;
 use crate::pyramid::SETS;
 use crate::sampling::PhotonSampler;
 use crate::scene::{MIDDLE, visibility};
-use crate::settings::PhotonPassSettings;
 
 pub use deposit::PyramidDeposits;
 pub use pilot::PhotonPilot;
@@ -52,20 +52,46 @@ pub struct PhotonPassCounts {
     pub costs: Costs,
 }
 
-/// Traces the photons with ids in `0..photon_count`, dealt in order into `sets` sets.
+/// Which light photons carry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carry {
+    /// All, to every surface.
+    All,
+    /// That of lights whose caustics are made of photons, through mirrors and glass to the first surface that is neither.
+    Caustics,
+}
+
+/// What the pass is to do.
+#[derive(Clone, Copy, Debug)]
+pub struct PhotonPass {
+    /// Which light.
+    pub carry: Carry,
+    /// Photons.
+    pub count: u64,
+    /// Surfaces a photon may visit.
+    pub max_depth: u32,
+    /// Another seed gives other photons.
+    pub seed: u32,
+    /// Sets the photons are dealt into.
+    pub sets: usize,
+}
+
+/// Traces the photons of a pass, dealt in order into its sets.
 ///
 /// # Errors
 /// [`RenderError::Cancelled`].
 pub fn run<S: PhotonSink>(
     lit: &LitScene<'_>,
-    settings: &PhotonPassSettings,
-    seed: u32,
-    sets: usize,
+    pass: PhotonPass,
     sink: &S,
     progress: &Progress,
 ) -> Result<PhotonPassCounts, RenderError> {
-    let count = settings.photon_count;
-    if !lit.plan.indirect() || lit.lights.is_empty() || count == 0 {
+    let PhotonPass { carry, count, max_depth, seed, sets } = pass;
+    let (called_for, owner) = match carry {
+        Carry::All => (lit.plan.indirect() && !lit.lights.is_empty(), lit.plan.indirect_owner()),
+        Carry::Caustics => (lit.plan.caustics && lit.lights.has_mapped(), Effect::Caustics),
+    };
+    if !called_for || count == 0 {
         return Ok(PhotonPassCounts::default());
     }
     let (segments, done) = (AtomicU64::new(0), AtomicU64::new(0));
@@ -75,7 +101,7 @@ pub fn run<S: PhotonSink>(
     let tracers: [Tracer<'_, S>; SETS] = std::array::from_fn(|set| {
         let first = |set: usize| (set as u64 * count).div_ceil(sets as u64);
         let share = (1.0 / (first(set + 1) - first(set)).max(1) as f64) as f32;
-        Tracer { lit, sink, set, share, max_depth: settings.max_depth }
+        Tracer { lit, sink, carry, set, share, max_depth }
     });
     (0..count.div_ceil(BATCH)).into_par_iter().try_for_each(|batch| {
         progress.check()?;
@@ -86,7 +112,7 @@ pub fn run<S: PhotonSink>(
         let mut traced = 0;
         for (ids, clocked) in [(ids.start..clocked_end, true), (clocked_end..ids.end, false)] {
             meter.begin(clocked);
-            meter.enter(lit.plan.indirect_owner());
+            meter.enter(owner);
             for id in ids {
                 let sampler = PhotonSampler::new(id, seed);
                 traced += tracers[set_of(id)].photon(sampler, &mut landed, &mut meter);
@@ -108,6 +134,7 @@ pub fn run<S: PhotonSink>(
 struct Tracer<'a, S> {
     lit: &'a LitScene<'a>,
     sink: &'a S,
+    carry: Carry,
     /// Set of its photons, and one photon's share of the light.
     set: usize,
     share: f32,
@@ -117,10 +144,13 @@ struct Tracer<'a, S> {
 impl<S: PhotonSink> Tracer<'_, S> {
     /// Follows one photon from its lamp; gives the number of segments traced.
     fn photon(&self, mut sampler: PhotonSampler, landed: &mut S::Batch, meter: &mut Meter) -> u64 {
-        let u = [sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw(), sampler.draw()];
-        let camera = &self.lit.accel.scene().camera;
-        let time = if self.lit.plan.motion_blur { camera.shutter.time(sampler.time()) } else { MIDDLE };
-        let Some(emission) = self.lit.emit(u, time) else { return 0 };
+        let (lit, shutter) = (self.lit, &self.lit.accel.scene().camera.shutter);
+        let time = if lit.plan.motion_blur { shutter.time(sampler.time()) } else { MIDDLE };
+        let emission = match self.carry {
+            Carry::All => lit.emit(std::array::from_fn(|_| sampler.draw()), time),
+            Carry::Caustics => lit.emit_to_casters(std::array::from_fn(|_| sampler.draw()), time),
+        };
+        let Some(emission) = emission else { return 0 };
         let flux = emission.flux * self.share;
         let leaving = match emission.normal {
             Some(normal) => {
@@ -159,13 +189,13 @@ impl<S: PhotonSink> Tracer<'_, S> {
         landed: &mut S::Batch,
         meter: &mut Meter,
     ) -> u64 {
-        let mut segments = 0;
+        let (mut segments, mut thrown) = (0, self.carry == Carry::All);
         let Arrival { mut ray, mut hit, mut flux, mut lobes } = arrival;
         for _ in 0..self.max_depth {
             let surface = self.lit.surface(&ray, hit, 0.0);
             let bsdf = &surface.bsdf;
-            if bsdf.has(lobes.and(LobeSet::READ)) {
-                let glossy = bsdf.has(lobes.and(LobeSet::ROUGH));
+            if thrown && bsdf.has(lobes.and(LobeSet::READ)) {
+                let glossy = self.carry == Carry::All && bsdf.has(lobes.and(LobeSet::ROUGH));
                 let at = if glossy { [sampler.draw(), sampler.draw()] } else { [0.0; 2] };
                 let glossy = glossy && self.lit.plan.direction_bins();
                 let at_rest = self.lit.moves(hit.object).then(|| self.lit.at_rest(&surface));
@@ -179,7 +209,8 @@ impl<S: PhotonSink> Tracer<'_, S> {
             }
             let u_lobe = sampler.draw();
             let u = [sampler.draw(), sampler.draw()];
-            let Some(next) = self.next_direction(&surface.bsdf, ray.direction, lobes, u_lobe, u) else {
+            let followed = if self.carry == Carry::All { lobes } else { lobes.and(LobeSet::FOLLOWED) };
+            let Some(next) = self.next_direction(&surface.bsdf, ray.direction, followed, u_lobe, u) else {
                 break;
             };
             // Flux over index squared is what refraction conserves.
@@ -190,10 +221,10 @@ impl<S: PhotonSink> Tracer<'_, S> {
             flux = flux * next.weight * (1.0 / survival);
             ray = surface.leaving(next.direction, next.kind);
             if !next.straight {
-                lobes = LobeSet::ALL;
+                (lobes, thrown) = (LobeSet::ALL, true);
             }
             segments += 1;
-            let owner = meter.enter_if(next.effect);
+            let owner = meter.enter_if(next.effect.filter(|_| self.carry == Carry::All));
             meter.count_own(1);
             let next_hit = self.lit.accel.intersect(&ray);
             meter.back(owner);

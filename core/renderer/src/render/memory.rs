@@ -61,6 +61,11 @@ impl Budget {
         Ok(Self(Some(limit - picture - tree)))
     }
 
+    /// What it leaves beside something else of so many bytes.
+    pub(super) fn less(self, bytes: u64) -> Self {
+        Self(self.0.map(|left| left.saturating_sub(bytes)))
+    }
+
     /// The layout as fine as memory allows, from `measure(resolution)`, with the resolution.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use super::kd_tree::Visitor;
 /// Collects the `k` nearest. Candidates are sorted out whenever twice as many have come together, which takes less
 /// time than a heap.
 #[derive(Debug)]
-pub(super) struct Nearest {
+pub struct Nearest {
     k: usize,
     bound: f32,
     candidates: Vec<Candidate>,
@@ -13,23 +13,23 @@ pub(super) struct Nearest {
 
 /// A point that was met.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Candidate {
+pub struct Candidate {
     /// Squared distance (square scene units).
-    pub(super) squared_distance: f32,
+    pub squared_distance: f32,
     /// Place in the tree.
-    pub(super) place: u32,
+    pub place: u32,
 }
 
 impl Nearest {
     /// A search for `k` points (at least one) no farther than `radius`.
-    pub(super) fn new(k: usize, radius: f32) -> Self {
+    pub fn new(k: usize, radius: f32) -> Self {
         Self { k, bound: radius * radius, candidates: Vec::with_capacity(2 * k) }
     }
 
     /// The points nearer than the k-th, and the square of its distance, or of the largest allowed where fewer were
     /// found. The k-th itself is left out: n points in a disc that ends at the next one estimate the density without
     /// bias, n + 1 do not.
-    pub(super) fn finish(&mut self) -> (&[Candidate], f32) {
+    pub fn finish(&mut self) -> (&[Candidate], f32) {
         if self.candidates.len() >= self.k {
             self.keep_nearest();
             self.candidates.truncate(self.k - 1);

@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3};
 /// A unit vector, as a point of the unfolded octahedron (Meyer et al. 2010, "On Floating-Point Normal Vectors"), within
 /// 0.004°.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Octahedral([i16; 2]);
+pub struct Octahedral([i16; 2]);
 
 const STEPS: f32 = 32767.0;
 

@@ -6,7 +6,7 @@
 use glam::Vec3;
 
 /// Points of a leaf.
-pub(super) const LEAF: usize = 16;
+pub const LEAF: usize = 16;
 
 /// Below this many points a subtree is built on one thread.
 const PARALLEL: usize = 8192;
@@ -23,7 +23,7 @@ struct Split {
 
 /// The tree. Its points are known by their place, which is their number in the order of the leaves.
 #[derive(Debug)]
-pub(super) struct KdTree {
+pub struct KdTree {
     leaves: Vec<Leaf>,
     /// Split `i` lies between the leaves `i` and `i + 1`. Of leaves `a..a + n` the root is the split before leaf
     /// `a + n / 2`.
@@ -31,7 +31,7 @@ pub(super) struct KdTree {
 }
 
 /// What a search does with the points it meets.
-pub(super) trait Visitor {
+pub trait Visitor {
     /// Squared distance from which on points are of no interest.
     fn bound(&self) -> f32;
     /// Takes a point nearer than the bound.
@@ -40,7 +40,7 @@ pub(super) trait Visitor {
 
 impl KdTree {
     /// The tree, and the number of the point at each place. The same points give the same tree.
-    pub(super) fn new(points: impl Iterator<Item = Vec3>) -> (Self, Vec<u32>) {
+    pub fn new(points: impl Iterator<Item = Vec3>) -> (Self, Vec<u32>) {
         #[expect(
             clippy::cast_possible_truncation,
             reason = "a photon map of four billion photons fits no machine"
@@ -61,19 +61,19 @@ impl KdTree {
     }
 
     /// Where the point at a place is.
-    pub(super) fn point(&self, place: usize) -> Vec3 {
+    pub fn point(&self, place: usize) -> Vec3 {
         let leaf = &self.leaves[place / LEAF];
         Vec3::new(leaf[0][place % LEAF], leaf[1][place % LEAF], leaf[2][place % LEAF])
     }
 
     /// Memory (bytes).
-    pub(super) const fn bytes(&self) -> usize {
+    pub const fn bytes(&self) -> usize {
         self.leaves.len() * size_of::<Leaf>() + self.splits.len() * size_of::<Split>()
     }
 
     /// Shows `visitor` the points about `p`, near parts of the tree first.
     #[inline]
-    pub(super) fn search(&self, p: Vec3, visitor: &mut impl Visitor) {
+    pub fn search(&self, p: Vec3, visitor: &mut impl Visitor) {
         let mut waiting = [Branch::default(); DEPTH];
         waiting[0].count = self.leaves.len();
         let mut depth = 1;
