@@ -4,7 +4,9 @@ mod support;
 
 use glam::{DVec3, Vec3};
 use rgp_renderer::color::Rgb;
-use rgp_renderer::scene::record::{ClosureRecord, Input, MaterialRecord, OutputRecord, ProgramRecord};
+use rgp_renderer::scene::record::{
+    ClosureRecord, Input, MaterialRecord, OutputRecord, ProgramRecord, WorldProgramRecord, WorldRecord,
+};
 use rgp_renderer::scene::{CornerLayer, MeshArrays, SceneBuilder};
 use rgp_renderer::shader::{
     Aside, Encoding, Extension, Instruction, Interpolation, Pixels, Quantity, Texture, VectorFunction,
@@ -226,6 +228,28 @@ fn a_textured_emitter_shines_as_its_parts_would() {
     for (parts, textured) in parts.into_iter().flatten().zip(textured.into_iter().flatten()) {
         assert_close(textured, parts, 0.01);
     }
+}
+
+/// Direct light counts that the world could have been chosen instead of the panel.
+#[test]
+fn a_panel_of_constant_emission_beside_an_uneven_sky() {
+    let picture = |panel: MaterialRecord| {
+        let mut builder = SceneBuilder::default();
+        place(&mut builder, floor(0.5, 0.3), &[panel]);
+        place(&mut builder, floor(1.0, 0.0), &[diffuse(0.5)]);
+        let instructions = vec![
+            Instruction::Geometry { quantity: Quantity::Position, aside: Aside::Here },
+            Instruction::VectorMath { function: VectorFunction::Absolute, a: 0, b: 0, c: 0 },
+        ];
+        let program = Some(WorldProgramRecord { instructions, radiance: 1 });
+        builder.set_world(WorldRecord { program, ..world(1.0) });
+        builder.set_camera(parallel_camera(DVec3::Z * 0.25, DVec3::ZERO, 0.5, 16));
+        finish_and_render(builder, &settings(50_000, 32, 64)).radiance()
+    };
+    let constant = material(&[ClosureRecord::Emission { radiance: Rgb::splat(3.0) }]);
+    let typical = ClosureRecord::Emission { radiance: Rgb::splat(2.0) };
+    let varying = programmed(typical, &[(Input::Radiance, 3.0)]);
+    assert_close(mean(&picture(varying)), mean(&picture(constant)), 0.01);
 }
 
 /// Seen from far outside the scene, a texture is as wide as it is from within: a pixel shows the mean of what it covers.

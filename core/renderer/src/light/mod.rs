@@ -394,7 +394,7 @@ impl Lights {
             casts_shadow: light.casts_shadow,
             visibility: light.visibility,
             is_mapped: self.is_mapped(emitter.light as usize),
-            point: sample.point.map(|point| point.chosen_with(chosen.probability)),
+            point: sample.point.map(|point| point.chosen_with(probability)),
         })
     }
 
