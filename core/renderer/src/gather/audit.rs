@@ -6,6 +6,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use super::block::Block;
 use super::caustics::Mapped;
 use super::deferred::{Target, Traces};
 use super::disagreement::{Disagreement, Hits};
@@ -55,6 +56,27 @@ struct Sums {
     difference: f64,
     square: f64,
     cells: Hits,
+}
+
+impl<E: Estimator> Block<'_, '_, E> {
+    /// Has what the gather ray of a lane brought checked; `before` is the lane's indirect light without it.
+    #[inline(never)]
+    pub(super) fn audit(&mut self, lane: usize, pdf: f32, index: u32, before: Rgb) {
+        let g = self.gatherer;
+        let Some(auditor) = g.auditor.filter(|_| self.packet.is_set(lane)) else { return };
+        let Some(hit) = self.packet.hit(lane) else { return };
+        let gather_ray = match self.others[lane] {
+            Some(ray) => ray,
+            None => GatherRay::diffuse(self.lambert.weight[lane], Some(pdf)),
+        };
+        let solid_angle = gather_ray.pdf.map_or(0.0, |pdf| g.solid_angle(pdf));
+        let read = self.samples[lane].indirect - before;
+        let key = hash(self.keys[lane], u64::from(index) << 16 | 6);
+        let mapped = self.share_of_mapped(lane, &gather_ray);
+        let audited =
+            auditor.follow((self.packet.ray(lane), hit), &gather_ray, solid_angle, mapped, read, key);
+        self.traces.audited.push(audited);
+    }
 }
 
 impl<'a> Auditor<'a> {

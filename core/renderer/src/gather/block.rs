@@ -36,7 +36,7 @@ pub(super) struct Block<'a, 'g, E: Estimator> {
     pub(super) gatherer: &'g Gatherer<'a, E>,
     /// Number of the camera sample.
     sample: u32,
-    keys: [u64; LANES],
+    pub(super) keys: [u64; LANES],
     seeds: PixelSeeds<LANES>,
     /// Camera samples on constant Lambert surfaces, and on all others.
     pub(super) lambert: LambertLanes,
@@ -48,7 +48,7 @@ pub(super) struct Block<'a, 'g, E: Estimator> {
     /// How far from the lens each camera ray starts.
     start: [f32; LANES],
     /// Of the packet: gather rays that did not start on a constant Lambert surface.
-    others: [Option<GatherRay>; LANES],
+    pub(super) others: [Option<GatherRay>; LANES],
     pub(super) traces: Traces<E::Place>,
 }
 
@@ -433,25 +433,6 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let (behind, light) = self.gatherer.cross_lamps(from, &ray, 0.0, sampled, &mut self.traces.meter);
         self.add_met(lane, gather_ray, light);
         behind
-    }
-
-    /// Has what the gather ray of a lane brought checked; `before` is the lane's indirect light without it.
-    #[inline(never)]
-    fn audit(&mut self, lane: usize, pdf: f32, index: u32, before: Rgb) {
-        let g = self.gatherer;
-        let Some(auditor) = g.auditor.filter(|_| self.packet.is_set(lane)) else { return };
-        let Some(hit) = self.packet.hit(lane) else { return };
-        let gather_ray = match self.others[lane] {
-            Some(ray) => ray,
-            None => GatherRay::diffuse(self.lambert.weight[lane], Some(pdf)),
-        };
-        let solid_angle = gather_ray.pdf.map_or(0.0, |pdf| g.solid_angle(pdf));
-        let read = self.samples[lane].indirect - before;
-        let key = hash(self.keys[lane], u64::from(index) << 16 | 6);
-        let mapped = self.share_of_mapped(lane, &gather_ray);
-        let audited =
-            auditor.follow((self.packet.ray(lane), hit), &gather_ray, solid_angle, mapped, read, key);
-        self.traces.audited.push(audited);
     }
 
     /// As `receive`, for a ray that meets light or anything but a constant Lambert surface, or is too short to be read.
