@@ -48,7 +48,7 @@ def test_a_clean_tree_has_no_problems(tmp_path: Path) -> None:
         (
             "core/renderer/src/gather/rays.rs",
             "use crate::photon_pass;\n",
-            "rays.rs:1: gather (rank 7) imports photon_pass",
+            "rays.rs:1: gather (rank 8) imports photon_pass",
         ),
         (
             "core/renderer/src/light/mod.rs",
