@@ -40,7 +40,7 @@ def shutter(b_depsgraph: Any) -> Shutter | None:
     b_scene = b_depsgraph.scene_eval
     b_render = b_scene.render
     wanted = b_render.use_motion_blur and b_scene.rgp.effects.motion_blur != "off"
-    in_layer = getattr(b_depsgraph.view_layer_eval, "use_motion_blur", True)
+    in_layer = b_depsgraph.view_layer_eval.use_motion_blur
     if not (wanted and in_layer) or b_render.motion_blur_shutter <= 0.0:
         return None
     frame, length = b_scene.frame_current + b_scene.frame_subframe, b_render.motion_blur_shutter

@@ -99,12 +99,8 @@ def test_off_looks_at_no_other_frame(blurred, export, how):
         blurred.rgp.effects.motion_blur = "off"
     elif how == "shutter":
         blurred.render.motion_blur_shutter = 0.0
-        if blurred.render.motion_blur_shutter > 0.0:
-            pytest.skip("this Blender has no shutter that stays shut")
-    elif hasattr(bpy.context.view_layer, "use_motion_blur"):
-        bpy.context.view_layer.use_motion_blur = False
     else:
-        pytest.skip("this Blender has no such switch")
+        bpy.context.view_layer.use_motion_blur = False
     seen = []
 
     def note(b_scene, *_):
