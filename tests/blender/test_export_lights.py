@@ -139,17 +139,6 @@ def test_portals_give_no_light(scene, export, problems):
     assert "Portal: light portals are not needed; left out" in problems()
 
 
-def test_light_linking_is_reported_once(scene, export, problems):
-    build.add_camera()
-    b_lamp = build.add_light("POINT")
-    b_object = b_lamp if hasattr(b_lamp, "light_linking") else bpy.data.objects["Lamp"]
-    assert len(export().lamps) == 1
-    assert not any("light linking" in text for text in problems())
-    b_object.light_linking.receiver_collection = bpy.data.collections.new("Few")
-    assert len(export().lamps) == 1
-    assert len([text for text in problems() if "light linking" in text]) == 1
-
-
 def world_of(scene):
     b_world = bpy.data.worlds.new("World")
     scene.world = b_world
