@@ -53,7 +53,9 @@ class _Sets:
         for address in sorted(set[int]().union(*named)):
             verdicts = self._verdicts(address)
             if verdicts not in self._numbers and len(self._numbers) >= most:
-                log.add("Scene", f"lights are linked to more than {most} sets of objects; not all are followed")
+                log.add(
+                    "Scene", f"lights are linked to more than {most} sets of objects; not all are followed"
+                )
                 continue
             self._number_of[address] = self._numbers.setdefault(verdicts, len(self._numbers))
 

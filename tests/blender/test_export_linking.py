@@ -2,6 +2,7 @@
 
 import bpy
 import pytest
+
 from tests.blender import build
 
 ALL = (1 << 32) - 1
@@ -29,14 +30,18 @@ def linked(which, state="INCLUDE", name="Linked"):
 def lit(exported, links):
     """Names of the objects that an emitter lights."""
     return "".join(
-        record["name"] for record in exported.objects if 1 << record["links"]["receiver_set"] & links["receivers"]
+        record["name"]
+        for record in exported.objects
+        if 1 << record["links"]["receiver_set"] & links["receivers"]
     )
 
 
 def blocking(exported, links):
     """Names of the objects that block an emitter."""
     sets = ALL if links["blockers"] is None else links["blockers"]
-    return "".join(record["name"] for record in exported.objects if 1 << record["links"]["blocker_set"] & sets)
+    return "".join(
+        record["name"] for record in exported.objects if 1 << record["links"]["blocker_set"] & sets
+    )
 
 
 def test_without_links_nothing_is_said(things, export):

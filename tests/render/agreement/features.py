@@ -8,7 +8,7 @@ from functools import partial
 
 import bpy
 
-from tests.render import cases, motion_cases, node_cases, path_cases, world_cases
+from tests.render import cases, linking_cases, motion_cases, node_cases, path_cases, world_cases
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,7 @@ def features() -> list[Feature]:
         *(Feature(case, partial(cases.build, case)) for case in cases.CASES),
         *(Feature(f"world/{name}", partial(world_cases.build, name)) for name in world_cases.WORLDS),
         *(Feature(f"path/{name}", partial(path_cases.build, name)) for name in path_cases.PATHS),
+        *(Feature(f"linking/{name}", partial(linking_cases.build, name)) for name in linking_cases.LINKINGS),
         *(Feature(f"motion/{name}", partial(motion_cases.build, name)) for name in motion_cases.MOTIONS),
         *(
             Feature(f"node/{name}", partial(node_cases.node_scene, case), box_filter=True)
