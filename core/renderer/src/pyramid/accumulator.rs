@@ -4,6 +4,7 @@
 //! different sets differs by the photons' noise too.
 
 use std::collections::BTreeMap;
+use std::hint::black_box;
 use std::sync::atomic::{AtomicI64, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -127,9 +128,17 @@ impl<'a> Accumulator<'a> {
         for deposits in deposits.chunks(TOGETHER) {
             let at = |i: usize| deposits.get(i).map(|photon| (photon.p, self.layout.classes.of(photon.side)));
             let places = self.layout.find_all::<TOGETHER>(std::array::from_fn(at));
+            self.touch(&places);
             for (deposit, place) in deposits.iter().zip(places) {
                 self.deposit_at(place, deposit);
             }
+        }
+    }
+
+    /// Reads the cells that are about to be added to. Reads wait for memory side by side, atomic sums one after the other.
+    fn touch(&self, places: &[Option<(usize, usize)>]) {
+        for (level, place) in places.iter().flatten() {
+            black_box(self.cells[*level][*place].count.load(Ordering::Relaxed));
         }
     }
 
