@@ -5,7 +5,8 @@ mod support;
 use std::f64::consts::PI;
 
 use glam::{DMat4, DVec3, Vec3};
-use rgp_renderer::scene::record::{MaterialRecord, ObjectLinks};
+use rgp_renderer::color::Rgb;
+use rgp_renderer::scene::record::{ClosureRecord, MaterialRecord, ObjectLinks};
 use rgp_renderer::scene::{LampShape, LightLinks, MeshArrays, SceneBuilder, visibility};
 use support::*;
 
@@ -56,16 +57,24 @@ fn half_a_sphere_is_lit() {
     }
 }
 
-/// A lamp within a black ball, in a sphere: where the ball does not block, E = ρ Φ / ((1 − ρ) A) as without it; else all is
-/// dark.
+/// A lamp within a black ball or a clear one, in a sphere: where the ball does not block or is clear, it is as bright as
+/// without, once: E = Φ / ((1 − ρ) A); else all is dark.
 #[test]
 fn what_does_not_block_casts_no_shadow() {
     let ball = || sphere(5, 1.0, Vec3::ZERO);
     let exact = ALBEDO / PI * FLUX / (area(&ball()) * (1.0 - ALBEDO));
-    for (blockers, expected) in [(Some(0b01), exact), (Some(0b10), 0.0), (None, 0.0)] {
+    let (black, clear) = (diffuse(0.0), material(&[ClosureRecord::Transparent { color: Rgb::WHITE }]));
+    for (blockers, material, expected) in [
+        (Some(0b01), &black, exact),
+        (Some(0b10), &black, 0.0),
+        (None, &black, 0.0),
+        (Some(0b01), &clear, exact),
+        (Some(0b10), &clear, exact),
+        (None, &clear, exact),
+    ] {
         let mut builder = SceneBuilder::default();
         add(&mut builder, ball(), &diffuse(ALBEDO as f32), 0, LightLinks::ALL);
-        add(&mut builder, sphere(2, 0.02, Vec3::ZERO), &diffuse(0.0), 1, LightLinks::ALL);
+        add(&mut builder, sphere(2, 0.02, Vec3::ZERO), material, 1, LightLinks::ALL);
         let mut lamp = lamp(LampShape::Point { radius: 0.01, soft_falloff: false }, FLUX as f32, DVec3::ZERO);
         lamp.links = LightLinks { receivers: u32::MAX, blockers };
         builder.add_lamp(lamp);
