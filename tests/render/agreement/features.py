@@ -27,10 +27,10 @@ def features() -> list[Feature]:
         *(Feature(case, partial(cases.build, case)) for case in cases.CASES),
         *(Feature(f"world/{name}", partial(world_cases.build, name)) for name in world_cases.WORLDS),
         *(Feature(f"path/{name}", partial(path_cases.build, name)) for name in path_cases.PATHS),
-        *(Feature(f"linking/{name}", partial(linking_cases.build, name)) for name in linking_cases.LINKINGS),
         *(Feature(f"motion/{name}", partial(motion_cases.build, name)) for name in motion_cases.MOTIONS),
         *(
             Feature(f"node/{name}", partial(node_cases.node_scene, case), box_filter=True)
             for name, case in node_cases.NODES.items()
         ),
+        *(Feature(f"linking/{name}", partial(linking_cases.build, name)) for name in linking_cases.LINKINGS),
     ]

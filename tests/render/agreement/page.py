@@ -19,9 +19,9 @@ _TITLES = {
     "world": "Worlds that differ from direction to direction",
     "material": "Shaders, under an even world and under a square lamp",
     "path": "Ways of light",
-    "linking": "Light linking and shadow linking",
     "motion": "Motion blur",
     "node": "Nodes",
+    "linking": "Light linking and shadow linking",
 }
 
 

@@ -489,8 +489,3 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         }
     }
 }
-
-/// The widest solid angle a stratum of `rays` cosine-distributed rays covers: the outermost, at the horizon.
-pub(super) fn widest_stratum(rays: u32) -> f32 {
-    2.0 * PI / (rays as f32).powf(0.75)
-}
