@@ -418,10 +418,40 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             }
             return;
         }
-        let found = g.estimator.read_all(&places, &read);
+        let asked = read;
+        let found = g.estimator.read_all(&places, &mut read);
         for lane in 0..LANES {
             self.samples[lane].indirect += weight[lane] * found[lane];
         }
+        if read != asked {
+            let untold = std::array::from_fn(|lane| asked[lane] && !read[lane]);
+            self.receive_untold(&untold, pdfs, index);
+        }
+    }
+
+    /// Follows the rays to what was asked for and could not be told.
+    #[inline(never)]
+    fn receive_untold(&mut self, untold: &[bool; LANES], pdfs: &[f32; LANES], index: u32) {
+        let g = self.gatherer;
+        for lane in (0..LANES).filter(|&lane| untold[lane]) {
+            let gather_ray = self.gather_ray(lane, pdfs[lane]);
+            let solid_angle = gather_ray.pdf.map_or(0.0, |pdf| g.solid_angle(pdf));
+            let hit = match self.packet.hit(lane) {
+                // The light of the lamps has been added.
+                Some(hit) if g.lit.accel.is_lamp(hit.object) => {
+                    let ray = self.packet.ray(lane);
+                    g.lit.accel.intersect(&Ray { mask: ray.mask & !visibility::LAMP, ..ray })
+                }
+                hit => hit,
+            };
+            self.receive_other(lane, &gather_ray, hit, solid_angle, index);
+        }
+    }
+
+    /// The gather ray of a lane, of which a diffuse one has the density `pdf`.
+    #[inline(always)]
+    fn gather_ray(&self, lane: usize, pdf: f32) -> GatherRay {
+        self.others[lane].unwrap_or_else(|| GatherRay::diffuse(self.lambert.weight[lane], Some(pdf)))
     }
 
     /// Adds the light of the lamps that the ray of a lane met first; gives what is behind them.
