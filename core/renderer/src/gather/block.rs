@@ -11,7 +11,6 @@ use crate::color::Rgb;
 use crate::effects_plan::Effect;
 use crate::estimator::{Estimator, Footprint};
 use crate::film::{BLOCK, PixelSample, TileRect};
-use crate::light::Receiver;
 use crate::lit_scene::ray_kind;
 use crate::sampling::{PixelSeeds, Rng, hash, shuffled_point, shuffled_points};
 use crate::scene::{MIDDLE, visibility};
@@ -184,6 +183,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let frame = g.lit.frame(ray, &hit, ng);
         let p = ray.origin + ray.direction * hit.t;
         self.lambert.put(lane, p, frame.ng, frame.ns, albedo, ray.time);
+        self.lambert.sets[lane] = g.lit.receiver_sets(hit.object);
         self.samples[lane].alpha = 1.0;
         true
     }
@@ -198,6 +198,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             kind,
             light: None,
             lit_side: None,
+            sets: u32::MAX,
             width,
             mapped: Rgb::WHITE,
         };
@@ -228,7 +229,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             self.traces.meter.enter(Effect::MirrorsAndGlass);
             self.traces.meter.count(Effect::MirrorsAndGlass, 1);
             throughput *= sample.weight;
-            sampled.kind = ray_kind(&sample);
+            (sampled.kind, sampled.sets) = (ray_kind(&sample), surface.sets);
             sampled.width = sampled.width.after(met.distance);
             ray = surface.leaving(sample.wi, sampled.kind | g.lit.accel.lamp_bit());
             self.traces.rays.camera += 1;
@@ -252,7 +253,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             let [x, y] = shuffled_points(index, &seeds);
             for (lane, shadow) in shadows.iter_mut().enumerate() {
                 *shadow = self.shadow(lane, [rotate(self.keys[lane], index), x[lane], y[lane]]);
-                let traced = shadow.as_ref().filter(|s| s.casts_shadow && !g.lit.plan.transparency);
+                let traced = shadow.as_ref().filter(|s| s.can_be_blocked() && !g.lit.plan.transparency);
                 if let Some(shadow) = traced {
                     self.packet.set(lane, &shadow.ray, shadow.t_far);
                     self.traces.rays.shadow += 1;
@@ -459,7 +460,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     fn cross_lamps(&mut self, lane: usize, gather_ray: &GatherRay, solid_angle: f32) -> Option<Hit> {
         let ray = self.packet.ray(lane);
         let sampled = self.sampled(lane, gather_ray, solid_angle);
-        let from = Receiver { p: ray.origin, normal: sampled.lit_side };
+        let from = sampled.receiver(ray.origin);
         let (behind, light) = self.gatherer.cross_lamps(from, &ray, 0.0, sampled, &mut self.traces.meter);
         self.add_met(lane, gather_ray, light);
         behind
@@ -493,9 +494,9 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
 
     /// How the gather ray of a lane was found.
     fn sampled(&self, lane: usize, gather_ray: &GatherRay, solid_angle: f32) -> Sampled {
-        let lit_side = match &self.vertices[lane] {
-            Some(vertex) => vertex.surface.bsdf.lit_side(),
-            None => Some(self.lambert.ns[lane]),
+        let (lit_side, sets) = match &self.vertices[lane] {
+            Some(vertex) => (vertex.surface.bsdf.lit_side(), vertex.surface.sets),
+            None => (Some(self.lambert.ns[lane]), self.lambert.sets[lane]),
         };
         Sampled {
             pdf: gather_ray.pdf,
@@ -503,6 +504,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             kind: gather_ray.kind,
             light: self.gatherer.lit.plan.direct.then_some(Effect::DirectLight),
             lit_side,
+            sets,
             width: Width::of_solid_angle(solid_angle),
             mapped: Rgb::WHITE,
         }
@@ -516,9 +518,4 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             self.samples[lane].direct += gather_ray.weight * light * g.direct_share;
         }
     }
-}
-
-/// The widest solid angle a stratum of `rays` cosine-distributed rays covers: the outermost, at the horizon.
-pub(super) fn widest_stratum(rays: u32) -> f32 {
-    2.0 * PI / (rays as f32).powf(0.75)
 }
