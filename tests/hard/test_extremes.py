@@ -33,8 +33,8 @@ def test_levels(check, resolution, size, levels):
 
 @pytest.mark.parametrize("bins", ["1x1", "8x16", "32x64"])
 def test_bins(check, bins):
-    """A furnace with rough reflection, read from direction bins: L = Le / (1 − ρ). What single scattering leaves of that
-    differs with the direction; the viewer's gain makes up for it where the bins tell directions apart."""
+    """A furnace with rough reflection, read from direction bins: L = Le / (1 − ρ). What single scattering leaves of
+    that differs with the direction; the viewer's gain makes up for it where the bins tell directions apart."""
     scene = Scene()
     scene.add(
         cuboid(), [closure("glossy", weight=0.5, color=1.0, roughness=0.8), closure("emission", radiance=1.0)]
