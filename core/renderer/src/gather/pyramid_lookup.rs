@@ -87,7 +87,7 @@ impl Estimator for PyramidLookup<'_> {
             radiance += bsdf.albedo(LobeSet::TRANSLUCENT) * irradiance * std::f32::consts::FRAC_1_PI;
         }
         if bsdf.has(LobeSet::ROUGH) {
-            let tint = surface.bsdf.specular_tint();
+            let tint = bsdf.specular_tint() * bsdf.rough_gain();
             let shift = [rng.draw() - 0.5, rng.draw() - 0.5];
             if lobes.intersects(LobeSet::ROUGH) {
                 radiance += tint * self.pyramid.glossy_radiance(surface.p, class, level, bsdf.wo(), shift)?;
