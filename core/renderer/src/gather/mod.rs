@@ -22,6 +22,7 @@ mod pilot;
 mod pyramid_lookup;
 mod readable;
 mod readings;
+mod receive;
 mod stop;
 mod vertex;
 

@@ -242,9 +242,11 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             let readable = hit.filter(|_| !sample.is_delta).and_then(|hit| {
                 self.readable(&ray, &hit, 0.0).or_else(|| self.readable_varying(&ray, &hit, 0.0))
             });
-            if let Some(readable) = readable {
-                let throughput = throughput * readable.reflectance;
-                radiance += target.read(self.estimator, readable.place, throughput);
+            let read = readable.and_then(|readable| {
+                target.read(self.estimator, readable.place, throughput * readable.reflectance)
+            });
+            if let Some(read) = read {
+                radiance += read;
                 break;
             }
             let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
