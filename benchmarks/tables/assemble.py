@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from benchmarks.tables import error
+from benchmarks.tables import error, paper
 from benchmarks.tables.job import Job
 from benchmarks.tables.plan import PHOTON_MAP, PYRAMID, ScenePlan
 from benchmarks.tables.store import Render
@@ -65,6 +65,7 @@ class SceneFigures:
                 "noise": self._truth.noise(unit),
                 "resolves": self._truth.resolves(unit),
             },
+            "doubts": self._doubts(),
             "pyramid_build_bytes": self._renders[self._timed].stats["pyramid"]["build_bytes"],
             "seconds": {setting: self._parts(setting) for setting in self._table3},
             "scaled_over_timed": {
@@ -100,8 +101,21 @@ class SceneFigures:
         twin = self._plan.twins.get(job)
         if twin is None:
             return None
-        one, other = (self._renders[each].indirect for each in (job, twin))
-        return self._truth.systematic(one, other, self._unit(job))
+        return self._truth.systematic(*self._indirect(job, twin), self._unit(job))
+
+    def _doubts(self) -> dict[str, float]:
+        """How far squared errors have to differ to be told apart, see `error.Truth.doubt`."""
+        one, other = (self._indirect(job, twin) for job, twin in self._plan.twins.items())
+        grids = [self._plan.tables["table2"][f"{PYRAMID} {finest}"] for finest in (paper.FINEST, paper.FINER)]
+        usual, finer = (self._indirect(job, job) for job in grids)
+        unit = self._unit(self._small)
+        return {
+            "without_noise": self._truth.doubt(one, other, unit),
+            "finer_grid": self._truth.doubt(usual, finer, unit),
+        }
+
+    def _indirect(self, one: Job, other: Job) -> error.Pair:
+        return self._renders[one].indirect, self._renders[other].indirect
 
     def _unit(self, job: Job) -> float:
         return error.peak(self._renders[self._plan.reference(job)].indirect)

@@ -26,13 +26,19 @@ def document(
     """`table1` to `table3` as {scene: {setting: row}}, what they were measured on and with, and the verdicts."""
     figures = {plan.subject.name: SceneFigures(plan, renders) for plan in plans}
     tables = {scene: _plain(figure) for scene, figure in figures.items()}
+    details = {scene: figure.details() for scene, figure in figures.items()}
     return {
         **{name: {scene: tables[scene][name] for scene in tables} for name in TABLES},
-        "details": {scene: figure.details() for scene, figure in figures.items()},
+        "details": details,
         "verdicts": [
             {**asdict(verdict), "verdict": verdict.word}
             for plan in plans
-            for verdict in verdicts(plan.subject, tables[plan.subject.name], scale.many_rays)
+            for verdict in verdicts(
+                plan.subject,
+                tables[plan.subject.name],
+                scale.many_rays,
+                details[plan.subject.name]["doubts"],
+            )
         ],
         "settings": {**asdict(scale), **_defaults(), "threads": THREADS},
         "commands": {"all": command, "renders": {plan.subject.name: _commands(plan) for plan in plans}},

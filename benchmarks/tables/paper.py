@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 RAYS = 256
 FINEST = 128
+FINER = 2 * FINEST
 BINS = "8x16"
 BYTES_PER_PHOTON = 28
 

@@ -72,7 +72,8 @@ def _bullets(settings: dict[str, Any]) -> Iterator[str]:
         paths (`gather.estimator=path`) in two independent halves; by using both, its own noise drops out of the
         error. Table 3 has two rows with {settings["many_rays"]} rays, where the noise of gather rays is smaller, and
         what is wrong there *without noise*: of two pictures with other photons and rays, the error of one times
-        that of the other leaves what both have wrong.
+        that of the other leaves what both have wrong. Which of two errors is the smaller *cannot be told* where
+        their squares differ by less than twice the standard error of that difference.
     """
 
 

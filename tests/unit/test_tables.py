@@ -62,10 +62,11 @@ def document(plan, renders):
     tables = {
         name: {setting: vars(row) for setting, row in rows.items()} for name, rows in figures.tables().items()
     }
-    found = verdicts(CORNELL, tables, FULL.many_rays)
+    details = figures.details()
+    found = verdicts(CORNELL, tables, FULL.many_rays, details["doubts"])
     return {
         **{name: {CORNELL.name: rows} for name, rows in tables.items()},
-        "details": {CORNELL.name: figures.details()},
+        "details": {CORNELL.name: details},
         "verdicts": [{**vars(verdict), "verdict": verdict.word} for verdict in found],
         "settings": {
             "rays": 256,
@@ -220,6 +221,38 @@ def test_what_two_pictures_have_wrong_alike_is_no_noise():
         assert systematic == pytest.approx(100.0 * error, abs=4.0 if error == 0.0 else 0.4)
 
 
+def test_errors_that_noise_may_have_made_different_cannot_be_told(document):
+    tables = {name: document[name][CORNELL.name] for name in ("table1", "table2", "table3")}
+    tables["table3"]["pyramid, 1024 rays"]["rms_systematic"] = 0.5
+    tables["table3"]["photon_map, 1024 rays"]["rms_systematic"] = 0.4
+    tables["table2"]["pyramid 256"]["rms_truth"] = 1.3
+    tables["table2"]["pyramid 128"]["rms_truth"] = 1.2
+
+    def words(without_noise, finer_grid):
+        doubts = {"without_noise": without_noise, "finer_grid": finer_grid}
+        found = {verdict.claim: verdict.word for verdict in verdicts(CORNELL, tables, 1024, doubts)}
+        return (
+            found["RMS against the truth, 1024 rays, noise removed"],
+            found["RMS against the truth, 256³ and 128³"],
+        )
+
+    # 0.5² - 0.4² = 0.3²; 1.3² - 1.2² = 0.5².
+    assert words(0.29, 0.49) == ("falls short", "falls short")
+    assert words(0.31, 0.51) == ("cannot be told", "cannot be told")
+
+
+def test_the_doubt_is_that_of_noise():
+    random = np.random.default_rng(1)
+    truth = Truth(picture(1.0, 64, 64), picture(1.0, 64, 64))
+    one, other = (tuple(picture(1.2, 64, 64) for _ in range(2)) for _ in range(2))
+    assert truth.doubt(one, other, 2.0) == 0.0
+    # Noise of 0.01 in each block of 8 x 8 pixels alike: the square of the error spreads by 2 x 0.2 times it.
+    noise = np.kron(random.normal(0.0, 0.01, (8, 8)), np.ones((8, 8)))[..., None].astype(np.float32)
+    noisy = picture(1.2, 64, 64) + noise
+    expected = 100.0 * np.sqrt(2.0 * 2.0 * 0.2 * 0.01 / np.sqrt(64.0)) / 2.0
+    assert truth.doubt((noisy, noisy), other, 2.0) == pytest.approx(expected, rel=0.1)
+
+
 def test_forecasts_learn_from_what_is_most_alike():
     forecast = Forecast()
     path = replace(JOB, estimator="path")
@@ -250,10 +283,11 @@ def test_verdicts_of_a_pyramid_that_reaches_everything(document):
     tables["table3"]["pyramid"] |= {"speedup": 100.0, "rms_paper": 0.5, "bytes": 40_000_000}
     tables["table3"]["pyramid, 1024 rays"]["rms_systematic"] = 0.3
     tables["table3"]["photon_map, 1024 rays"]["rms_systematic"] = 0.31
-    assert {verdict.word for verdict in verdicts(CORNELL, tables, 1024)} == {"pass"}
+    known = {"without_noise": 0.0, "finer_grid": 0.0}
+    assert {verdict.word for verdict in verdicts(CORNELL, tables, 1024, known)} == {"pass"}
     tables["table3"]["photon_map, 1024 rays"]["rms_systematic"] = 0.3
     tables["table2"]["pyramid 256"]["rms_paper"] = 2.1
-    missed = [verdict.claim for verdict in verdicts(CORNELL, tables, 1024) if not verdict.is_reached]
+    missed = [verdict.claim for verdict in verdicts(CORNELL, tables, 1024, known) if not verdict.is_reached]
     assert missed == [
         "RMS against the truth, 1024 rays, noise removed",
         "RMS against the photon map, 256³ and 128³",

@@ -7,7 +7,8 @@ use glam::{DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::math::Side;
 use rgp_renderer::pyramid::{
-    Accumulator, Grid, Layout, NormalClasses, Pyramid, SidePoint, SurfaceTriangle, Surroundings,
+    Accumulator, Deposit, Grid, Layout, NormalClasses, Pyramid, SidePoint, SurfaceTriangle, Surroundings,
+    TOGETHER,
 };
 
 const RESOLUTION: u32 = 128;
@@ -107,8 +108,12 @@ impl Surroundings for Room {
 
 fn deposit(accumulator: &Accumulator<'_>, landings: &[Landing]) {
     let flux = Rgb::splat(1.0 / PHOTONS as f32);
-    for landing in landings {
-        black_box(accumulator.deposit(0, landing.p, Side { normal: landing.normal, back: false }, flux));
+    let side = |normal| Side { normal, back: false };
+    let mut waiting = Vec::with_capacity(TOGETHER);
+    for landings in landings.chunks(TOGETHER) {
+        waiting.clear();
+        waiting.extend(landings.iter().map(|at| Deposit { set: 0, p: at.p, side: side(at.normal), flux }));
+        accumulator.deposit_all(black_box(&waiting));
     }
 }
 

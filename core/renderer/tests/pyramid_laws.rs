@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::math::Side;
 use rgp_renderer::pyramid::{
-    Accumulator, Grid, Layout, NormalClasses, Pyramid, SidePoint, SurfaceTriangle, Surroundings,
+    Accumulator, Deposit, Grid, Layout, NormalClasses, Pyramid, SidePoint, SurfaceTriangle, Surroundings,
 };
 
 /// Edge of a finest cell.
@@ -53,6 +53,10 @@ fn front(normal: Vec3) -> Side {
     Side { normal, back: false }
 }
 
+fn landed(p: Vec3, normal: Vec3, flux: Rgb) -> Deposit {
+    Deposit { set: 0, p, side: front(normal), flux }
+}
+
 fn normal([a, b, c]: [DVec3; 3]) -> Vec3 {
     (b - a).cross(c - a).normalize().as_vec3()
 }
@@ -81,7 +85,7 @@ fn constant_field(layout: &Layout, turned: DQuat, irradiance: f64, n: u64, photo
     for i in 0..n * n {
         let p = (turned * position(i, n)).as_vec3();
         assert!(
-            accumulator.deposit(0, p, front((turned * DVec3::Z).as_vec3()), flux).is_some(),
+            accumulator.deposit(&landed(p, (turned * DVec3::Z).as_vec3(), flux)).is_some(),
             "{p} has no cell"
         );
     }
@@ -119,7 +123,7 @@ fn flux_is_the_same_on_every_level() {
             let p = DVec3::new(random() * SIDE, random() * SIDE, 0.0);
             let flux = random().powi(8) as f32 / photons as f32;
             total += f64::from(flux);
-            accumulator.deposit(0, p.as_vec3(), front(Vec3::Z), Rgb::splat(flux));
+            accumulator.deposit(&landed(p.as_vec3(), Vec3::Z, Rgb::splat(flux)));
         }
         assert_eq!((accumulator.deposited(), accumulator.lost()), (photons, 0));
         let pyramid =
@@ -183,7 +187,7 @@ fn the_order_of_deposits_does_not_matter() {
     let build = |order: &mut dyn Iterator<Item = u64>| {
         let accumulator = Accumulator::new(&layout, 1e16, None);
         for i in order {
-            accumulator.deposit(0, position(i, n).as_vec3(), front(Vec3::Z), flux(i));
+            accumulator.deposit(&landed(position(i, n).as_vec3(), Vec3::Z, flux(i)));
         }
         Pyramid::build(accumulator, &layout, 16, &Square(DQuat::IDENTITY)).expect("nobody cancels")
     };

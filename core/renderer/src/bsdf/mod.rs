@@ -272,10 +272,7 @@ impl Bsdf<'_> {
     /// The BSDF (sr⁻¹) of the lobes of `set` for `wi`, without the cosine; delta lobes give nothing.
     #[must_use]
     pub fn eval(&self, wi: Vec3, set: LobeSet, mode: TransportMode) -> Rgb {
-        match mode {
-            TransportMode::Radiance => self.eval_with_pdf(wi, set).0,
-            TransportMode::Importance => self.adjoint_value(wi, set),
-        }
+        self.value_in(mode, self.eval_with_pdf(wi, set).0, wi, set)
     }
 
     /// Density per solid angle of `sample` restricted to `set`, at `wi`; delta lobes count as not being `wi`.
@@ -323,8 +320,7 @@ impl Bsdf<'_> {
             (self.delta_value(lobe, wi, mode) / chance, chance)
         } else {
             let (value, pdf) = self.eval_with_pdf(wi, set);
-            let value = if mode == TransportMode::Radiance { value } else { self.adjoint_value(wi, set) };
-            (value * (side_s.abs() / pdf), pdf)
+            (self.value_in(mode, value, wi, set) * (side_s.abs() / pdf), pdf)
         };
         let usable = weight.is_finite() && !weight.is_black() && pdf_solid_angle > 0.0;
         usable.then(|| BsdfSample {
@@ -366,14 +362,15 @@ impl Bsdf<'_> {
         value * (self.shading_correction(wi) / (lobe.eta() * lobe.eta()))
     }
 
-    /// Value in importance mode. A Lambert lobe alone needs no second look: it is the same from everywhere.
-    fn adjoint_value(&self, wi: Vec3, set: LobeSet) -> Rgb {
-        let value = if self.material.is_plain() {
-            self.eval_with_pdf(wi, set).0
-        } else {
-            self.adjoint(wi).eval_with_pdf(self.wo, set).0
-        };
-        value * self.shading_correction(wi)
+    /// The value in `mode`, given the one in radiance mode. A Lambert lobe alone needs no second look: it is the same from
+    /// everywhere.
+    fn value_in(&self, mode: TransportMode, value: Rgb, wi: Vec3, set: LobeSet) -> Rgb {
+        if mode == TransportMode::Radiance {
+            return value;
+        }
+        let seen_back =
+            if self.material.is_plain() { value } else { self.adjoint(wi).eval_with_pdf(self.wo, set).0 };
+        seen_back * self.shading_correction(wi)
     }
 
     /// The same hit seen from `wi`.

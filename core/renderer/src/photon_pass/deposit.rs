@@ -1,9 +1,11 @@
 //! Photons into the pyramid's accumulator.
 
+use arrayvec::ArrayVec;
+
 use crate::bsdf::Bsdf;
 use crate::color::Rgb;
 use crate::estimator::{Landing, PhotonSink};
-use crate::pyramid::{self, Accumulator, Lanes, Leaving};
+use crate::pyramid::{self, Accumulator, Deposit, Lanes, Leaving, TOGETHER};
 
 /// Deposits photons where they land.
 pub struct PyramidDeposits<'a> {
@@ -20,20 +22,31 @@ impl<'a> PyramidDeposits<'a> {
 }
 
 impl PhotonSink for PyramidDeposits<'_> {
-    type Batch = ();
+    /// Photons that wait for others to look for their cells with.
+    type Batch = ArrayVec<Deposit, TOGETHER>;
 
     #[inline]
-    fn land(&self, (): &mut (), landing: &Landing<'_>) {
+    fn land(&self, waiting: &mut Self::Batch, landing: &Landing<'_>) {
         let (surface, flux) = (landing.surface, landing.flux);
-        let cell = self.accumulator.deposit(landing.set, surface.p, surface.bsdf.frame.side(), flux);
-        let Some(cell) = cell.filter(|_| landing.glossy) else { return };
+        let deposit = Deposit { set: landing.set, p: surface.p, side: surface.bsdf.frame.side(), flux };
+        if !landing.glossy {
+            waiting.push(deposit);
+            if waiting.is_full() {
+                self.accumulator.deposit_all(waiting);
+                waiting.clear();
+            }
+            return;
+        }
+        let Some(cell) = self.accumulator.deposit(&deposit) else { return };
         let tint = surface.bsdf.specular_tint();
         let tinted = Rgb([0, 1, 2].map(|c| flux.0[c] / tint.0[c]));
         let (accumulator, bsdf, at) = (self.accumulator, &surface.bsdf, landing.at);
         self.instructions.dispatch(GlossyDeposit { accumulator, cell, bsdf, tinted, at });
     }
 
-    fn finish(&self, _number: u64, (): ()) {}
+    fn finish(&self, _number: u64, waiting: Self::Batch) {
+        self.accumulator.deposit_all(&waiting);
+    }
 }
 
 /// What a photon on a glossy surface adds to its cell's direction bins, for whichever vector instructions this processor

@@ -4,6 +4,7 @@
 //! different sets differs by the photons' noise too.
 
 use std::collections::BTreeMap;
+use std::hint::black_box;
 use std::sync::atomic::{AtomicI64, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -22,10 +23,8 @@ pub const SETS: usize = 2;
 #[derive(Debug)]
 pub struct Accumulator<'a> {
     layout: &'a Layout,
-    /// By level, by place, by set: red, green, blue in quanta.
-    flux: Vec<Vec<[[AtomicI64; 3]; SETS]>>,
-    /// By level, by place: photons of all sets.
-    count: Vec<Vec<AtomicU32>>,
+    /// By level, by place.
+    cells: Vec<Vec<AtomicCell>>,
     /// By level, by place, where there are glossy surfaces at all; filled where the first photon lands on one.
     glossy: Vec<Vec<Mutex<GlossySums>>>,
     bins: DirectionBins,
@@ -33,8 +32,30 @@ pub struct Accumulator<'a> {
     quantum: f64,
     /// 1 / quantum: exact, since both are powers of two.
     per_quantum: f64,
-    deposited: AtomicU64,
     lost: AtomicU64,
+}
+
+/// What landed in one cell, in a cache line of its own.
+#[derive(Debug, Default)]
+#[repr(align(64))]
+struct AtomicCell {
+    /// By set: red, green, blue in quanta.
+    flux: [[AtomicI64; 3]; SETS],
+    /// Photons of all sets.
+    count: AtomicU32,
+}
+
+/// A photon that has landed.
+#[derive(Clone, Copy, Debug)]
+pub struct Deposit {
+    /// Set it belongs to.
+    pub set: usize,
+    /// Where, in scene space.
+    pub p: Vec3,
+    /// On which side of a surface.
+    pub side: Side,
+    /// Before the surface's albedo (W).
+    pub flux: Rgb,
 }
 
 /// Quanta of each channel of [`LANES`] bins at a time, the bins of one set after those of the other; empty until a photon
@@ -54,6 +75,9 @@ pub struct Landing {
     place: usize,
     set: usize,
 }
+
+/// Photons that look for their cells together.
+pub const TOGETHER: usize = 16;
 
 /// One photon of a billion still is some million quanta, and two thousand times the emitted flux fits in a cell.
 const QUANTUM_BITS: f64 = 52.0;
@@ -78,8 +102,7 @@ impl<'a> Accumulator<'a> {
         let all_bins = bins.unwrap_or(DirectionBins { elevation: 1, azimuth: 1 });
         Self {
             layout,
-            flux: cells.clone().map(|n| std::iter::repeat_with(Default::default).take(n).collect()).collect(),
-            count: cells.map(|n| std::iter::repeat_with(Default::default).take(n).collect()).collect(),
+            cells: cells.map(|n| std::iter::repeat_with(Default::default).take(n).collect()).collect(),
             glossy: glossy_cells
                 .map(|n| {
                     std::iter::repeat_with(Mutex::default).take(if bins.is_some() { n } else { 0 }).collect()
@@ -89,23 +112,45 @@ impl<'a> Accumulator<'a> {
             corners: BinCorners::new(all_bins),
             quantum,
             per_quantum: quantum.recip(),
-            deposited: AtomicU64::new(0),
             lost: AtomicU64::new(0),
         }
     }
 
-    /// Adds a photon of a set that lands at `p` on one side of a surface; gives the cell.
-    pub fn deposit(&self, set: usize, p: Vec3, side: Side, flux: Rgb) -> Option<Landing> {
-        let class = self.layout.classes.of(side);
-        let place = self.layout.find(p, class).filter(|_| flux.is_finite());
-        let Some((level, place)) = place else {
+    /// Adds a photon; gives the cell.
+    pub fn deposit(&self, deposit: &Deposit) -> Option<Landing> {
+        let place = self.layout.find(deposit.p, self.layout.classes.of(deposit.side));
+        self.deposit_at(place, deposit)
+    }
+
+    /// Adds photons: one step for [`TOGETHER`] of them before the next, so that the memory is waited for once and not once
+    /// per photon.
+    pub fn deposit_all(&self, deposits: &[Deposit]) {
+        for deposits in deposits.chunks(TOGETHER) {
+            let at = |i: usize| deposits.get(i).map(|photon| (photon.p, self.layout.classes.of(photon.side)));
+            let places = self.layout.find_all::<TOGETHER>(std::array::from_fn(at));
+            self.touch(&places);
+            for (deposit, place) in deposits.iter().zip(places) {
+                self.deposit_at(place, deposit);
+            }
+        }
+    }
+
+    /// Reads the cells that are about to be added to. Reads wait for memory side by side, atomic sums one after the other.
+    fn touch(&self, places: &[Option<(usize, usize)>]) {
+        for (level, place) in places.iter().flatten() {
+            black_box(self.cells[*level][*place].count.load(Ordering::Relaxed));
+        }
+    }
+
+    fn deposit_at(&self, place: Option<(usize, usize)>, deposit: &Deposit) -> Option<Landing> {
+        let Some((level, place)) = place.filter(|_| deposit.flux.is_finite()) else {
             self.lost.fetch_add(1, Ordering::Relaxed);
             return None;
         };
-        self.add(&self.flux[level][place][set], flux, dither(p.to_array()));
-        self.count[level][place].fetch_add(1, Ordering::Relaxed);
-        self.deposited.fetch_add(1, Ordering::Relaxed);
-        Some(Landing { level, place, set })
+        let cell = &self.cells[level][place];
+        self.add(&cell.flux[deposit.set], deposit.flux, dither(deposit.p.to_array()));
+        cell.count.fetch_add(1, Ordering::Relaxed);
+        Some(Landing { level, place, set: deposit.set })
     }
 
     /// Adds what the photon's surface sends in each direction. `at` in [0, 1)² is where in each bin that is asked; a random
@@ -145,7 +190,7 @@ impl<'a> Accumulator<'a> {
     /// Photons added.
     #[must_use]
     pub fn deposited(&self) -> u64 {
-        self.deposited.load(Ordering::Relaxed)
+        self.cells.iter().flatten().map(|cell| u64::from(cell.count.load(Ordering::Relaxed))).sum()
     }
 
     /// Photons that found no cell: rounding at slivers, or a flux that was not a number.
@@ -157,7 +202,7 @@ impl<'a> Accumulator<'a> {
     /// Memory (bytes) that the accumulator of a layout takes at most, and the pyramid that is made of it.
     #[must_use]
     pub fn bytes_for(layout: &Layout, bins: Option<DirectionBins>) -> usize {
-        let cell = 2 * (size_of::<[[i64; 3]; SETS]>() + size_of::<u32>());
+        let cell = size_of::<AtomicCell>() + size_of::<CellSum>();
         let cells = layout.cell_count();
         let Some(bins) = bins else { return cells * cell };
         let bin_sums = SETS * bins.count().div_ceil(LANES) * size_of::<[[i64; LANES]; 3]>();
@@ -167,9 +212,8 @@ impl<'a> Accumulator<'a> {
     /// Memory (bytes).
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let sums =
-            self.flux.iter().map(|level| level.len() * (size_of::<[[i64; 3]; SETS]>() + size_of::<u32>()));
-        sums.sum::<usize>() + self.bin_bytes()
+        let cells: usize = self.cells.iter().map(Vec::len).sum();
+        cells * size_of::<AtomicCell>() + self.bin_bytes()
     }
 
     /// Memory (bytes) of the direction bins alone.
@@ -185,15 +229,11 @@ impl<'a> Accumulator<'a> {
 
     /// What was added, by level and place.
     pub(super) fn into_sums(self) -> Sums {
-        let levels = self.flux.into_iter().zip(self.count).map(|(flux, count)| {
-            flux.into_iter()
-                .zip(count)
-                .map(|(flux, count)| CellSum {
-                    flux: flux.map(|set| set.map(AtomicI64::into_inner)),
-                    count: u64::from(count.into_inner()),
-                })
-                .collect()
-        });
+        let sum = |cell: AtomicCell| CellSum {
+            flux: cell.flux.map(|set| set.map(AtomicI64::into_inner)),
+            count: u64::from(cell.count.into_inner()),
+        };
+        let levels = self.cells.into_iter().map(|cells| cells.into_iter().map(sum).collect());
         let count = self.bins.count();
         let by_bin = |sums: &GlossySums| -> Vec<[i64; 3]> {
             let sets = sums.chunks(sums.len() / SETS);

@@ -16,9 +16,6 @@ use super::{Cell, Level, Pyramid, Surroundings};
 use crate::color::Rgb;
 use crate::math::Frame;
 
-/// A cell with less surface than this part of its face is read from its parent: a single photon there would be a spark.
-const SLIVER: f64 = 0.1;
-
 impl Pyramid {
     /// Photons that a cell has to hold for its children to be read.
     #[must_use]
@@ -58,12 +55,19 @@ impl Pyramid {
                 let at = parents.index.find(layout.grid.parent(number, cell)?, class)?;
                 Some(std::array::from_fn(|set| &parents.cells[set][at]))
             };
-            // Where the parent's light is read.
+            // A cell is not worth its memory where it would only repeat its parent: what is missing is read from there.
+            let is_kept = |place: usize| {
+                let is_read = || parent(place).is_some_and(|[parent, _]| parent.holds_enough());
+                sums.cells[number][place].count > 0 && (number == 0 || is_read())
+            };
+            // Slivers of something that is no mixture have their parent's light.
             let read_above = |place: usize| {
-                parent(place).filter(|[parent, _]| reads_parent(parent, &surfaces, number, place))
+                parent(place).filter(|[parent, _]| !parent.is_mixed() && surfaces.is_sliver(number, place))
             };
             let clock = Instant::now();
-            let glossy = push_bins(&surfaces, number, &sums, &mut store, |place| read_above(place).is_none());
+            let glossy = push_bins(&surfaces, number, &sums, &mut store, |place| {
+                is_kept(place) && read_above(place).is_none()
+            });
             bins_time += clock.elapsed();
             let settle = |place: usize| -> [Cell; SETS] {
                 let is_divided = grid.is_divided(number, layout.grid.levels[number].lattice(key(place).0));
@@ -86,11 +90,6 @@ impl Pyramid {
             };
             let places = 0..layout.levels[number].keys.len();
             let values: Vec<[Cell; SETS]> = places.into_par_iter().map(settle).collect();
-            // Refined cells that would only repeat their parent are not worth their memory.
-            let is_kept = |place: usize| {
-                let is_read = || parent(place).is_some_and(|[parent, _]| parent.holds_enough());
-                sums.cells[number][place].count > 0 && (number <= grid.base() || is_read())
-            };
             let level = keep(layout, number, is_kept, &values);
             levels.push(level);
         }
@@ -124,14 +123,6 @@ fn own_irradiance(surfaces: &Surfaces<'_>, number: usize, place: usize, sums: &S
     let area = surfaces.area(number, place);
     let flux = sums.cells[number][place].flux[set];
     Rgb(flux.map(|flux| (flux as f64 * sums.quantum / area) as f32))
-}
-
-/// Whether a cell's parent is read in its place: where the photons are too few to tell, or the cell is a sliver of
-/// something that is no mixture.
-fn reads_parent(parent: &Cell, surfaces: &Surfaces<'_>, number: usize, place: usize) -> bool {
-    let area = surfaces.area(number, place);
-    let sliver = area < SLIVER * f64::from(surfaces.layout.grid.levels[number].cell_size).powi(2);
-    !parent.holds_enough() || (sliver && !parent.is_mixed())
 }
 
 /// Puts the bins of a level's glossy cells into the store, of those that are read; gives their numbers by place.

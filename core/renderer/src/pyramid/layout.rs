@@ -140,6 +140,21 @@ impl Layout {
         })
     }
 
+    /// [`Layout::find`] for several photons, each a position and a class, one step for all before the next.
+    #[must_use]
+    pub(super) fn find_all<const N: usize>(
+        &self,
+        at: [Option<(Vec3, usize)>; N],
+    ) -> [Option<(usize, usize)>; N] {
+        let located = at.map(|at| self.grid.locate(self.grid.offset(at?.0), self.grid.finest()));
+        let bricks = located.map(|located| located.map(|(level, cell)| self.levels[level].index.brick(cell)));
+        std::array::from_fn(|i| {
+            let ((p, class), (level, _), (brick, bit)) = (at[i]?, located[i]?, bricks[i]?);
+            let place = self.levels[level].index.place(brick, bit, class);
+            place.map_or_else(|| self.find(p, class), |place| Some((level, place)))
+        })
+    }
+
     /// Normal of the frame of a cell's direction bins; the class's own axis would be wrong by up to 55°.
     #[must_use]
     pub fn bins_normal(&self, level: usize, place: usize) -> Vec3 {

@@ -34,7 +34,7 @@ use std::time::Duration;
 
 use glam::{DVec3, IVec3, Vec3};
 
-pub use accumulator::{Accumulator, Landing, Leaving, SETS};
+pub use accumulator::{Accumulator, Deposit, Landing, Leaving, SETS, TOGETHER};
 pub use bins::{DirectionBins, Lanes};
 pub use cell_id::CellId;
 pub use class::NormalClasses;

@@ -13,6 +13,9 @@ use super::index::CellKey;
 use super::layout::Layout;
 use super::measure::measure;
 
+/// Part of a cell's face: a cell with less surface is a sliver.
+const SLIVER: f64 = 0.1;
+
 /// Surface inside one cell and normal class. Sums are integers, so that their order does not matter.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CellSurface {
@@ -187,6 +190,11 @@ impl<'a> Surfaces<'a> {
     #[expect(clippy::cast_precision_loss, reason = "an area needs no more than 53 bits")]
     pub(super) fn area(&self, level: usize, place: usize) -> f64 {
         self.levels[level].surfaces[place].area as f64 * self.layout.area_unit()
+    }
+
+    /// Whether there is so little surface in a cell that a single photon there would be a spark.
+    pub(super) fn is_sliver(&self, level: usize, place: usize) -> bool {
+        self.area(level, place) < SLIVER * f64::from(self.layout.grid.levels[level].cell_size).powi(2)
     }
 
     /// Place of the coarser cell that a cell is a part of: where its surface and light are counted too.
