@@ -1,4 +1,6 @@
-"""Renders scenes that others made with both engines and writes `docs/real-scenes.md`: `python -m benchmarks.real_scenes`.
+"""Renders scenes that others made with both engines and writes `docs/real-scenes.md`.
+
+Run it by `make scenes` or `python -m benchmarks.real_scenes`.
 
 With a part of a scene's name it renders only those, into `out/real_scenes`, prints their figures and writes no page.
 """
@@ -31,7 +33,9 @@ def main() -> None:
     parser.add_argument("only", nargs="*", metavar="NAME", help="a part of a scene's name; default: all")
     parser.add_argument("--scenes", type=Path, default=_SCENES, help="folder of the files")
     parser.add_argument("--width", type=int, default=320, help="of the pictures, pixels; default: 320")
-    parser.add_argument("--samples", type=int, default=512, help="of Cycles, per pixel and picture; default: 512")
+    parser.add_argument(
+        "--samples", type=int, default=512, help="of Cycles, per pixel and picture; default: 512"
+    )
     parser.add_argument("--set", metavar="GROUP.NAME=VALUE", action="append", default=[], help="our settings")
     options = parser.parse_args()
     chosen = [
@@ -40,7 +44,7 @@ def main() -> None:
         if not options.only or any(part in subject.name for part in options.only)
     ]
     rgp_engine.register()
-    writes_page = not (options.only or options.set)
+    writes_page = not options.only
     jpegs = _DOCS / _PICTURES
     for folder in (_OUTPUT, jpegs) if writes_page else (_OUTPUT,):
         folder.mkdir(parents=True, exist_ok=True)
@@ -54,7 +58,12 @@ def main() -> None:
         found[subject.name] = figures(comparison)
         print(subject.name, found[subject.name], file=sys.stderr, flush=True)
     if writes_page:
-        setup = {"width": options.width, "samples": options.samples, "blender": bpy.app.version_string}
+        setup = {
+            "width": options.width,
+            "samples": options.samples,
+            "settings": options.set,
+            "blender": bpy.app.version_string,
+        }
         write(_DOCS, _PICTURES, found, setup)
 
 

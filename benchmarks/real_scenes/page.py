@@ -36,7 +36,8 @@ def figures(comparison: Comparison) -> Figures:
 
 def write(folder: Path, pictures: str, found: Mapping[str, Figures], setup: Figures) -> None:
     """Writes the figures and the page into a folder whose part `pictures` has a JPEG of every scene that may be
-    shown. `setup` has the width, Cycles' samples per pixel and Blender's version."""
+    shown. `setup` has the width, Cycles' samples per pixel, our settings and Blender's
+    version."""
     document = {"setup": setup, "scenes": found}
     (folder / "real-scenes.json").write_text(json.dumps(document, indent=1) + "\n")
     subjects = [subject for subject in SUBJECTS if subject.name in found]
@@ -47,12 +48,13 @@ def write(folder: Path, pictures: str, found: Mapping[str, Figures], setup: Figu
 
 
 def _introduction(setup: Figures) -> str:
+    settings = f", but `{' '.join(setup['settings'])}`" if setup["settings"] else ""
     return f"""# Scenes that others made
 
 Written by `make scenes` with Cycles of Blender {setup["blender"]}, from files that are no part of the project. Each is
-rendered {setup["width"]} pixels wide by both engines: ours with the settings it has when it is chosen, Cycles with
-{setup["samples"]} samples per pixel, {BOUNCES} bounces, all caustics, and no clamping, no denoising and no Filter
-Glossy. The figures are also in [real-scenes.json](real-scenes.json).
+rendered {setup["width"]} pixels wide by both engines: ours with the settings it has when it is chosen{settings},
+Cycles with {setup["samples"]} samples per pixel, {BOUNCES} bounces, all caustics, and no clamping, no denoising and no
+Filter Glossy. The figures are also in [real-scenes.json](real-scenes.json).
 
 In the pictures ours is on the left, Cycles' in the middle, both with one exposure. On the right is the difference: red
 to yellow where ours is brighter, blue to white where it is darker, the strongest color from {RANGE:.0%} on.
@@ -73,7 +75,9 @@ def _table(subjects: Sequence[Subject], found: Mapping[str, Figures]) -> str:
         entry = found[subject.name]
         ratio = " ".join(f"{channel:.3f}" for channel in entry["mean_ratio"])
         errors = [f"{entry[key]:.1%}" for key in ("beyond_noise", "noise", "cycles_noise")]
-        seconds = [f"{entry[key]:.0f}" for key in ("seconds", "cycles_seconds", "cycles_seconds_at_our_noise")]
+        seconds = [
+            f"{entry[key]:.0f}" for key in ("seconds", "cycles_seconds", "cycles_seconds_at_our_noise")
+        ]
         lines.append(f"| {subject.name} | {ratio} | {' | '.join(errors)} | {' | '.join(seconds)} |")
     return "\n".join(lines)
 

@@ -46,6 +46,8 @@ SUBJECTS = (
     Subject("modern_hall", f"Modern Hall by NewSee2l035, {_CC_BY}"),
     Subject("sibenik", "Sibenik Cathedral by Marko Dabrovic; its license is not clear", may_be_shown=False),
     Subject("veach_ajar", "Veach, Ajar by Benedikt Bitterli, CC0"),
-    Subject("water_caustic", "Water Caustic by Benedikt Bitterli, example scene of Tungsten, zlib-style license"),
+    Subject(
+        "water_caustic", "Water Caustic by Benedikt Bitterli, example scene of Tungsten, zlib-style license"
+    ),
     Subject("wooden_staircase", f"The Wooden Staircase by Wig42, {_CC_BY}"),
 )

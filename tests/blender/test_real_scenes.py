@@ -60,7 +60,12 @@ def test_page_and_pictures(tmp_path):
     write_pictures(tmp_path / "a.png", tmp_path / "a.jpg", pixels)
     assert (tmp_path / "a.jpg").read_bytes()[:2] == b"\xff\xd8"
     found = {scene.name: figures(comparison) for scene in (subject, hidden)}
-    write(tmp_path, "pictures", found, {"width": 96, "samples": 4, "blender": "5.0"})
+    write(
+        tmp_path,
+        "pictures",
+        found,
+        {"width": 96, "samples": 4, "settings": ["gather.rays=4"], "blender": "5.0"},
+    )
     page = (tmp_path / "real-scenes.md").read_text(encoding="utf-8")
     assert "Lamp: has a node that is left out (3 times)" in page
     assert f"pictures/{subject.name}.jpg" in page
