@@ -34,7 +34,7 @@ NOTES = {
         "Nothing differs at a glance. Our picture is 2 % darker, mostly in the upper nave; cells are coarse "
         "there, as the file has a ground of 126 m round a nave of 30 m."
     ),
-    "veach_ajar": "Nothing differs but noise: all light comes through a gap, and Cycles has noise as large as its mean.",
+    "veach_ajar": "Nothing differs but noise: light comes through a gap alone, and Cycles is as noisy as bright.",
     "water_caustic": (
         "**Our picture is several times brighter:** the lamp is a square of 5 mm, and nearly all light below the "
         "water is a caustic. Paths meet such a lamp behind glass next to never: Cycles misses the light at any "
