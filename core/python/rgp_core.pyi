@@ -71,6 +71,10 @@ class SceneBuilder:
     def set_object_info(self, index: int, record: dict[str, Any]) -> None:
         """What materials may ask about an object: `{"color": [r, g, b, a], "index", "random"}`."""
 
+    def set_object_links(self, index: int, record: dict[str, Any]) -> None:
+        """Light linking: `{"receiver_set", "blocker_set", "light": {"receivers", "blockers"}}`; sets are numbers below 32 and
+        24, `receivers` and `blockers` (or None: everything) have a bit for each set that an emitter lights or is blocked by."""
+
     def set_object_motion(self, index: int, steps: npt.NDArray[np.float64]) -> None:
         """world_from_object at even times while the shutter is open, from when it opens until it is shut, the middle left
         out: (N, 4, 4), N even."""

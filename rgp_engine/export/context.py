@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ..report import ProblemLog
+from .linking import Linking
 
 if TYPE_CHECKING:
     import rgp_core
@@ -39,7 +40,12 @@ class ExportContext:
     """The core's number of each layer's name."""
     emits: bool = False
     """True once anything in the scene can give light."""
+    linking: Linking = field(init=False)
+    """Which lights light what."""
     _next_tick: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.linking = Linking(self.b_depsgraph, self.log)
 
     def attribute_number(self, name: str) -> int:
         """The core's number of a layer: "uv", "uv:NAME", "color", "attribute:NAME" or "generated"."""

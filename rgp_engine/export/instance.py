@@ -54,6 +54,8 @@ def _export_mesh(context: ExportContext, b_instance: Any, moving: Moving | None)
     index = context.builder.add_object(b_object.name, mesh, matrix, materials, visibility)
     if context.asking_objects.intersection(materials):
         context.builder.set_object_info(index, _object_info(b_instance))
+    if context.linking.is_used:
+        context.builder.set_object_links(index, context.linking.of_object(owner(b_instance)))
     if moving is not None:
         moving.note(b_instance, index, mesh)
 

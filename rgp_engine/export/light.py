@@ -7,7 +7,7 @@ from .context import ExportContext
 from .coordinates import matrix_array
 from .fold import Folder
 from .nodes import Input, Output, node_tree, origin, output_node
-from .visibility import instance_bits
+from .visibility import instance_bits, owner
 
 
 def export_light(context: ExportContext, b_instance: Any) -> None:
@@ -17,28 +17,21 @@ def export_light(context: ExportContext, b_instance: Any) -> None:
     if getattr(getattr(b_light, "cycles", None), "is_portal", False):
         context.log.add(b_object.name, "light portals are not needed; left out")
         return
-    _report_linking(context, b_object)
     power = lamp_power(context, b_light, b_instance.matrix_world)
     if not any(power):
         return
     context.emits = True
-    context.builder.add_lamp(
-        {
-            "name": b_object.name,
-            "shape": lamp_shape(b_light),
-            "power": list(power),
-            "world_from_lamp": matrix_array(b_instance.matrix_world).tolist(),
-            "visibility": instance_bits(context, b_instance),
-            "casts_shadow": b_light.use_shadow,
-        }
-    )
-
-
-def _report_linking(context: ExportContext, b_object: Any) -> None:
-    """Light and shadow linking, which would change the picture."""
-    b_linking = b_object.light_linking
-    if b_linking.receiver_collection is not None or b_linking.blocker_collection is not None:
-        context.log.add(b_object.name, "light linking is not supported yet; the lamp lights everything")
+    record = {
+        "name": b_object.name,
+        "shape": lamp_shape(b_light),
+        "power": list(power),
+        "world_from_lamp": matrix_array(b_instance.matrix_world).tolist(),
+        "visibility": instance_bits(context, b_instance),
+        "casts_shadow": b_light.use_shadow,
+    }
+    if context.linking.is_used:
+        record["links"] = context.linking.of_emitter(owner(b_instance))
+    context.builder.add_lamp(record)
 
 
 def lamp_power(context: ExportContext, b_light: Any, b_matrix: Any) -> Color:

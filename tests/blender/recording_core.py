@@ -50,6 +50,9 @@ class SceneBuilder:
     def set_object_info(self, index: int, record: dict[str, Any]) -> None:
         self.objects[index]["info"] = record
 
+    def set_object_links(self, index: int, record: dict[str, Any]) -> None:
+        self.objects[index]["links"] = record
+
     def set_object_motion(self, index: int, steps: Any) -> None:
         self.objects[index]["steps"] = steps
 

@@ -31,9 +31,10 @@ def test_levels(check, resolution, size, levels):
     check(f"{case}: levels", expected=levels, got=picture.stats["pyramid"]["levels"], bound=0.0)
 
 
-@pytest.mark.parametrize("bins", ["1x1", "32x64"])
+@pytest.mark.parametrize("bins", ["1x1", "8x16", "32x64"])
 def test_bins(check, bins):
-    """A furnace with rough reflection, read from direction bins: L = Le / (1 − ρ)."""
+    """A furnace with rough reflection, read from direction bins: L = Le / (1 − ρ). What single scattering leaves of
+    that differs with the direction; the viewer's gain makes up for it where the bins tell directions apart."""
     scene = Scene()
     scene.add(
         cuboid(), [closure("glossy", weight=0.5, color=1.0, roughness=0.8), closure("emission", radiance=1.0)]
@@ -41,7 +42,7 @@ def test_bins(check, bins):
     picture = scene.render(settings(pyramid__bins=bins, photon_pass__photon_count=400_000, gather__rays=256))
     assert picture.stats["pyramid"]["glossy_cells"] > 0
     # One bin holds the mean over the hemisphere, whatever the direction it is read in.
-    bound = 0.03 if bins == "1x1" else 0.01
+    bound = 0.03 if bins == "1x1" else 0.002
     check(f"direction bins {bins}", expected=2.0, got=picture.mean, bound=bound)
 
 

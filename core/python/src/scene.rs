@@ -120,6 +120,10 @@ impl SceneBuilder {
         self.0.set_object_info(index, parse(record, "object")?).map_err(to_python)
     }
 
+    fn set_object_links(&mut self, index: usize, record: &Bound<'_, PyDict>) -> PyResult<()> {
+        self.0.set_object_links(index, parse(record, "object")?).map_err(to_python)
+    }
+
     fn add_lamp(&mut self, record: &Bound<'_, PyDict>) -> PyResult<usize> {
         Ok(self.0.add_lamp(parse(record, "lamp")?))
     }

@@ -85,18 +85,24 @@ pub trait Estimator: Sync {
     /// be followed instead.
     fn place(&self, p: Vec3, side: Side, wo: Vec3, footprint: Footprint) -> Option<Self::Place>;
 
-    /// Irradiance (W·m⁻²), or radiance (W·m⁻²·sr⁻¹) of those that read radiance.
-    fn read(&self, place: &Self::Place) -> Rgb;
+    /// Irradiance (W·m⁻²), or radiance (W·m⁻²·sr⁻¹) of those that read radiance; `None` where it cannot be told, and the ray
+    /// has to be followed after all.
+    fn read(&self, place: &Self::Place) -> Option<Rgb>;
 
-    /// [`Estimator::read`] at the places that are `set`; anything at the others.
+    /// [`Estimator::read`] at the places that are `set`, which those that cannot be told then are no more; black at the
+    /// others.
     #[inline]
-    fn read_all(&self, places: &[Self::Place; LANES], set: &[bool; LANES]) -> [Rgb; LANES] {
-        std::array::from_fn(|i| if set[i] { self.read(&places[i]) } else { Rgb::BLACK })
+    fn read_all(&self, places: &[Self::Place; LANES], set: &mut [bool; LANES]) -> [Rgb; LANES] {
+        std::array::from_fn(|i| {
+            let read = if set[i] { self.read(&places[i]) } else { None };
+            set[i] = read.is_some();
+            read.unwrap_or(Rgb::BLACK)
+        })
     }
 
-    /// [`Estimator::read`] at every place, in order. Those that defer answer nothing but this.
-    fn answer(&self, places: &[Self::Place]) -> Vec<Rgb> {
-        places.iter().map(|place| self.read(place)).collect()
+    /// Those that defer answer nothing but this: the light at every place, in order.
+    fn answer(&self, _places: &[Self::Place]) -> Vec<Rgb> {
+        Vec::new()
     }
 
     /// Radiance that those of the diffuse and glossy lobes of `surface` that are in `lobes` send to where the ray came from;
@@ -110,7 +116,7 @@ pub trait Estimator: Sync {
         _rng: &mut Rng,
     ) -> Option<Rgb> {
         let place = self.place(surface.p, surface.bsdf.frame.side(), surface.bsdf.wo(), footprint)?;
-        Some(reflectance::<Self>(surface, lobes) * self.read(&place))
+        Some(reflectance::<Self>(surface, lobes) * self.read(&place)?)
     }
 }
 
@@ -130,8 +136,8 @@ impl Estimator for Path {
         None
     }
 
-    fn read(&self, (): &()) -> Rgb {
-        Rgb::BLACK
+    fn read(&self, (): &()) -> Option<Rgb> {
+        None
     }
 
     fn radiance(

@@ -39,13 +39,15 @@ pub struct Surface<'a> {
     pub hit: Hit,
     /// When, while the shutter is open.
     pub time: f32,
+    /// Bit of its object's set of receivers.
+    pub sets: u32,
 }
 
 impl Surface<'_> {
     /// What lights it.
     #[must_use]
     pub fn receiver(&self) -> Receiver {
-        Receiver { p: self.p, normal: self.bsdf.lit_side() }
+        Receiver { p: self.p, normal: self.bsdf.lit_side(), sets: self.sets }
     }
 
     /// A ray that leaves it at once.
@@ -77,7 +79,15 @@ impl<'a> LitScene<'a> {
                 self.varying_bsdf(material, varying, &point)
             }
         };
-        Surface { p: ray.origin + ray.direction * hit.t, ng, bsdf, hit, time: ray.time }
+        let (p, sets) = (ray.origin + ray.direction * hit.t, self.receiver_sets(hit.object));
+        Surface { p, ng, bsdf, hit, time: ray.time, sets }
+    }
+
+    /// Bit of an object's set of receivers.
+    #[inline]
+    #[must_use]
+    pub fn receiver_sets(&self, object: u32) -> u32 {
+        self.accel.scene().objects[object as usize].receiver
     }
 
     #[inline(never)]

@@ -127,8 +127,8 @@ fn lamps_without_shadows_are_left_to_direct_sampling() {
         assert_eq!(crossed(&lights, Vec3::ZERO, Vec3::Z, 9.0, KIND), 0);
         assert!(!lights.has_lamp_shapes());
         let sample = lights.sample_direct(Vec3::ZERO, [0.5; 3]).unwrap();
-        assert!(sample.is_delta && !sample.casts_shadow);
-        assert!(!lights.emit([0.5; 5]).unwrap().casts_shadow);
+        assert!(sample.is_delta && sample.blockers == 0);
+        assert_eq!(lights.emit([0.5; 5]).unwrap().blockers, 0);
     }
 }
 

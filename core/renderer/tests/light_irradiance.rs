@@ -8,7 +8,7 @@ use glam::{DAffine3, DMat3, DVec3, Vec3};
 use light_support::{assert_close, irradiance, lamp, object, one_lamp, polygon_irradiance, scene, turned};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::light::Lights;
-use rgp_renderer::scene::{Lamp, LampShape};
+use rgp_renderer::scene::{Lamp, LampShape, visibility};
 
 const POWER: f32 = 10.0;
 const INTENSITY: f64 = POWER as f64 / (4.0 * PI);
@@ -43,7 +43,7 @@ fn point_light_falls_with_the_square_of_the_distance() {
         assert_close(irradiance(&lights, p, Vec3::Z, 1, 1), expected, 1e-5);
     }
     let sample = lights.sample_direct(Vec3::ZERO, [0.5; 3]).unwrap();
-    assert!(sample.is_delta && sample.casts_shadow);
+    assert!(sample.is_delta && sample.blockers == visibility::SHADOW);
     assert_close(f64::from(sample.distance), f64::from(position.length()), 1e-6);
 }
 

@@ -35,7 +35,7 @@ fn noise(lights: &Lights) -> f64 {
     let (mut random, mut variance) = (Random(8), 0.0);
     for _ in 0..points {
         let [x, y] = random.uniforms();
-        let receiver = Receiver { p: Vec3::new(x - 0.5, y - 0.5, -0.4), normal: Some(UP) };
+        let receiver = Receiver { p: Vec3::new(x - 0.5, y - 0.5, -0.4), normal: Some(UP), sets: u32::MAX };
         let (mut sum, mut squares) = (0.0, 0.0);
         for i in 0..samples {
             let [jitter, x, y] = random.uniforms();
@@ -81,7 +81,7 @@ fn lamps_of_a_tree_add_up() {
         let count = 400_000;
         for i in 0..count {
             let [jitter, x, y] = random.uniforms();
-            let receiver = Receiver { p, normal: Some(UP) };
+            let receiver = Receiver { p, normal: Some(UP), sets: u32::MAX };
             let sample = together.sample_direct(receiver, [(i as f32 + jitter) / count as f32, x, y]);
             sum += sample.map_or(0.0, |s| f64::from(s.radiance_over_pdf.0[0] * s.wi.dot(UP).max(0.0)));
         }

@@ -59,7 +59,7 @@ fn emissive_scene(lamps: Vec<Lamp>) -> (Scene, Vec<Rgb>) {
 /// Sum of the radiance and of the pdf of everything a ray from `FROM` meets; the pdf is that of a receiver with this
 /// normal.
 fn met(scene: &Scene, lights: &Lights, emission: &[Rgb], wi: Vec3, normal: Option<Vec3>) -> (f64, f64) {
-    let receiver = Receiver { p: FROM, normal };
+    let receiver = Receiver { p: FROM, normal, sets: u32::MAX };
     let (mut radiance, mut pdf) = (0.0, 0.0);
     let mut add = |r: Rgb, p: f32| {
         radiance += f64::from(r.0[0]);
@@ -86,7 +86,7 @@ fn assert_spread_as_pdf(scene: &Scene, emission: &[Rgb], normal: Option<Vec3>, n
     const COLUMNS: usize = 24;
     const PARTS: usize = 64;
     let lights = Lights::build(scene, emission);
-    let receiver = Receiver { p: FROM, normal };
+    let receiver = Receiver { p: FROM, normal, sets: u32::MAX };
     let count = 200_000;
     let mut hits = vec![0.0; ROWS * COLUMNS + 1];
     let mut random = Random(9);

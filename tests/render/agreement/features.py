@@ -8,7 +8,7 @@ from functools import partial
 
 import bpy
 
-from tests.render import cases, motion_cases, node_cases, path_cases, world_cases
+from tests.render import cases, linking_cases, motion_cases, node_cases, path_cases, world_cases
 
 
 @dataclass(frozen=True)
@@ -32,4 +32,5 @@ def features() -> list[Feature]:
             Feature(f"node/{name}", partial(node_cases.node_scene, case), box_filter=True)
             for name, case in node_cases.NODES.items()
         ),
+        *(Feature(f"linking/{name}", partial(linking_cases.build, name)) for name in linking_cases.LINKINGS),
     ]

@@ -21,6 +21,7 @@ _TITLES = {
     "path": "Ways of light",
     "motion": "Motion blur",
     "node": "Nodes",
+    "linking": "Light linking and shadow linking",
 }
 
 
@@ -63,8 +64,7 @@ def _introduction(figures: Mapping[str, Mapping[str, Any]], blender: str) -> str
     return f"""# Agreement with Cycles
 
 Written by `make agreement`, with Cycles of Blender {blender}. Every feature is alone in a scene of a few objects, built
-by `cases.py`, `world_cases.py`, `path_cases.py` and `node_cases.py` in `tests/render`, and rendered by both engines in
-one process. The figures are also in [agreement.json](agreement.json).
+by `cases.py` and its neighbors `*_cases.py` in `tests/render`, and rendered by both engines in one process. The figures are also in [agreement.json](agreement.json).
 
 {passed} of {len(rendered)} features agree: their means differ by at most {LARGEST_MEAN_DIFFERENCE:.0%}, and their
 pixels by at most {LARGEST_RMS:.0%} (RMS, of the mean) beyond the noise. The noise is known from {len(SEEDS)} pictures

@@ -117,8 +117,8 @@ impl Estimator for PhotonMap {
         (!footprint.sharp).then_some((p, side.normal))
     }
 
-    fn read(&self, &(p, ng): &(Vec3, Vec3)) -> Rgb {
-        self.irradiance_at(p, ng)
+    fn read(&self, &(p, ng): &(Vec3, Vec3)) -> Option<Rgb> {
+        Some(self.irradiance_at(p, ng))
     }
 
     /// The BSDF is evaluated for every photon.

@@ -87,10 +87,10 @@ impl Estimator for PrecomputedIrradiance {
         (!footprint.sharp).then_some((p, side.normal))
     }
 
-    fn read(&self, &(p, ng): &(Vec3, Vec3)) -> Rgb {
+    fn read(&self, &(p, ng): &(Vec3, Vec3)) -> Option<Rgb> {
         let bound = MAX_RADIUS * MAX_RADIUS;
         let mut closest = Closest { records: &self.records, ng, bound, place: None };
         self.tree.search(p, &mut closest);
-        closest.place.map_or(Rgb::BLACK, |place| Rgb(self.records[place].irradiance))
+        Some(closest.place.map_or(Rgb::BLACK, |place| Rgb(self.records[place].irradiance)))
     }
 }

@@ -159,8 +159,8 @@ impl Estimator for ReversePhotonMap {
         (!footprint.sharp).then_some((p, side.normal))
     }
 
-    fn read(&self, place: &(Vec3, Vec3)) -> Rgb {
-        self.answer(std::slice::from_ref(place))[0]
+    fn read(&self, place: &(Vec3, Vec3)) -> Option<Rgb> {
+        self.answer(std::slice::from_ref(place)).pop()
     }
 
     fn answer(&self, places: &[(Vec3, Vec3)]) -> Vec<Rgb> {

@@ -93,7 +93,7 @@ impl Estimator for UniformGrid {
     }
 
     /// Flux over the face of the cube that holds enough photons.
-    fn read(&self, p: &Vec3) -> Rgb {
+    fn read(&self, p: &Vec3) -> Option<Rgb> {
         let center = self.cell(*p);
         let mut sum = Cell::default();
         let mut ring = 0;
@@ -103,6 +103,6 @@ impl Estimator for UniformGrid {
             self.add_ring(center, ring, &mut sum);
         }
         let edge = (2 * ring + 1) as f32 * self.cell_size;
-        Rgb(sum.flux) * (1.0 / (edge * edge))
+        Some(Rgb(sum.flux) * (1.0 / (edge * edge)))
     }
 }

@@ -70,6 +70,8 @@ pub(super) struct Lobe {
     pub(super) fresnel: Fresnel,
     /// Factor on everything: color, share, energy compensation, dimming by the layers above.
     pub(super) weight: Rgb,
+    /// The part of `weight` that stands for light of many bounces between microfacets. It depends on the viewer.
+    pub(super) gain: Rgb,
     /// Share of light arriving uniformly from everywhere that is sent to the viewer.
     pub(super) albedo: Rgb,
     /// A single bit.
@@ -82,7 +84,7 @@ impl Lobe {
     /// Lambert reflection of `albedo`.
     pub(super) fn lambert(albedo: Rgb, slot: u8) -> Self {
         let (shape, fresnel) = (Shape::Lambert, Fresnel::Full);
-        Self { shape, fresnel, weight: albedo, albedo, class: LobeSet::DIFFUSE, slot }
+        Self { shape, fresnel, weight: albedo, gain: Rgb::WHITE, albedo, class: LobeSet::DIFFUSE, slot }
     }
 
     /// Lambert transmission of `albedo`.

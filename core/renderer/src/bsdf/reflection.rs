@@ -43,11 +43,13 @@ pub(super) fn push_constant(
     slot: u8,
 ) {
     let table = energy_table::reflection(rough.roughness, cos);
-    let weight = weight * color * compensation(table.total, table.mean, color);
+    let gain = compensation(table.total, table.mean, color);
+    let weight = weight * color * gain;
     lobes.push(Lobe {
         shape: Shape::Reflection { alpha: rough.alpha },
         fresnel: Fresnel::Full,
         weight,
+        gain,
         albedo: weight * table.total,
         class: rough.reflection_class(),
         slot,
@@ -69,13 +71,15 @@ impl Metal {
     pub(super) fn push(self, lobes: &mut LobeList, weight: Rgb, rough: Roughness, cos: f32, slot: u8) {
         let table = energy_table::reflection(rough.roughness, cos);
         let fss = fresnel::metal_mean(self.f0, self.dip);
-        let weight = weight * compensation(table.total, table.mean, fss);
+        let gain = compensation(table.total, table.mean, fss);
+        let weight = weight * gain;
         let schlick = self.f0 * (table.total - table.schlick) + Rgb::splat(table.schlick);
         let single = (schlick - self.dip * table.dent).map(|c| c.max(0.0));
         lobes.push(Lobe {
             shape: Shape::Reflection { alpha: rough.alpha },
             fresnel: Fresnel::Metal { f0: self.f0, dip: self.dip },
             weight,
+            gain,
             albedo: weight * single,
             class: rough.reflection_class(),
             slot,
@@ -108,19 +112,21 @@ impl Layer {
             _ => (table.rise, table.layer),
         };
         let fss = f0.lerp(Rgb::WHITE, mean_rise(eta));
-        let gain = compensation(reflection.total, reflection.mean, fss) * share;
-        let reflected = gain * (f0 * (reflection.total - rise) + Rgb::splat(rise));
+        let gain = compensation(reflection.total, reflection.mean, fss);
+        let dimmed = gain * share;
+        let reflected = dimmed * (f0 * (reflection.total - rise) + Rgb::splat(rise));
         lobes.push(Lobe {
             shape: Shape::Reflection { alpha: rough.alpha },
             fresnel: Fresnel::Dielectric { f0, eta },
-            weight: weight * gain,
+            weight: weight * dimmed,
+            gain,
             albedo: weight * reflected,
             class: rough.reflection_class(),
             slot,
         });
         // Cycles takes the first, an estimate. It makes light from nothing where it is the smaller: by 1.5 % at most, at
         // cosines below 0.05, but by half for indices below 1.
-        let estimate = gain * f0.lerp(Rgb::WHITE, layer) * reflection.total;
+        let estimate = dimmed * f0.lerp(Rgb::WHITE, layer) * reflection.total;
         (1.0 - estimate.max_channel().max(reflected.max_channel())).max(0.0)
     }
 }

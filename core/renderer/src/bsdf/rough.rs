@@ -2,18 +2,24 @@
 //!
 //! The same values as [`Bsdf::eval`], written without branches over arrays, so that the loops become vector code where
 //! they are compiled for it. With h = wo + wi not normalized, |h| is twice the cosine at the microfacet.
+//!
+//! A photon comes from `wo` and the viewer is at `wi`, the reverse of what a [`Bsdf`] is made for. Single scattering does
+//! not care. What stands for light of many bounces between microfacets is the viewer's, by as much as a factor of two: it
+//! is left out here, and [`Bsdf::rough_gain`] brings it in where the viewer is known. How layers dim each other is taken as
+//! the photon's direction has it.
 
 use std::f32::consts::PI;
 
 use super::lobe::{Fresnel, Shape};
 use super::{Bsdf, LobeSet, fresnel};
+use crate::color::Rgb;
 
 /// Half vectors shorter than this (squared) belong to directions that are opposite but for rounding.
 const LEAST_HALF: f32 = 1e-12;
 
 impl Bsdf<'_> {
-    /// [`Bsdf::eval`] in radiance mode of the lobes of class [`LobeSet::ROUGH`] towards `N` unit vectors. Directions are
-    /// given by axis, values (sr⁻¹) come by channel.
+    /// Over the viewer's [`Bsdf::rough_gain`], what the lobes of class [`LobeSet::ROUGH`] send towards viewers at `N` unit
+    /// vectors of light from `wo`. Directions are given by axis, values (sr⁻¹) come by channel.
     #[must_use]
     #[inline(always)]
     pub fn eval_rough<const N: usize>(&self, wi: &[[f32; N]; 3]) -> [[f32; N]; 3] {
@@ -38,9 +44,23 @@ impl Bsdf<'_> {
             for i in 0..N {
                 values[i] = if above[i] { values[i] } else { 0.0 };
             }
-            add_reflected(&mut out, lobe.fresnel, lobe.weight.0, &values, &half);
+            let weight = [0, 1, 2].map(|c| lobe.weight.0[c] / lobe.gain.0[c]);
+            add_reflected(&mut out, lobe.fresnel, weight, &values, &half);
         }
         out
+    }
+
+    /// What [`Bsdf::eval_rough`] leaves out, for a viewer at `wo`: of several lobes the mean by albedo.
+    #[must_use]
+    pub fn rough_gain(&self) -> Rgb {
+        let (mut gain, mut total) = (Rgb::BLACK, 0.0);
+        for lobe in self.lobes(LobeSet::ROUGH) {
+            // Never 0, so that a black lobe alone has a gain too.
+            let share = lobe.albedo.mean() + 1e-12;
+            gain += lobe.gain * share;
+            total += share;
+        }
+        if total > 0.0 { gain * (1.0 / total) } else { Rgb::WHITE }
     }
 }
 

@@ -128,6 +128,7 @@ impl<'a> Auditor<'a> {
             kind: gather_ray.kind,
             light: None,
             lit_side: None,
+            sets: u32::MAX,
             width,
             mapped: Rgb::WHITE,
         };

@@ -9,21 +9,20 @@ use crate::accel::{Hit, LANES, Packet, Ray};
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::color::Rgb;
 use crate::effects_plan::Effect;
-use crate::estimator::{Estimator, Footprint};
+use crate::estimator::Estimator;
 use crate::film::{BLOCK, PixelSample, TileRect};
-use crate::light::Receiver;
 use crate::lit_scene::ray_kind;
 use crate::sampling::{PixelSeeds, Rng, hash, shuffled_point, shuffled_points};
 use crate::scene::{MIDDLE, visibility};
 use crate::settings::GatherSampling;
 
+use super::Gatherer;
 use super::camera::{CameraRay, camera_ray};
-use super::deferred::{Deferred, Target, Traces};
+use super::deferred::Traces;
 use super::direct::{ShadowRay, Shares, lambert_shadow_ray, shadow_ray, transmittance};
 use super::lambert::LambertLanes;
 use super::path::Sampled;
 use super::vertex::{GatherRay, Vertex, rotate};
-use super::{Gatherer, Width};
 
 /// One block in so many is clocked, to tell what each effect costs.
 const CLOCKED: u64 = 64;
@@ -184,6 +183,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let frame = g.lit.frame(ray, &hit, ng);
         let p = ray.origin + ray.direction * hit.t;
         self.lambert.put(lane, p, frame.ng, frame.ns, albedo, ray.time);
+        self.lambert.sets[lane] = g.lit.receiver_sets(hit.object);
         self.samples[lane].alpha = 1.0;
         true
     }
@@ -198,6 +198,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             kind,
             light: None,
             lit_side: None,
+            sets: u32::MAX,
             width,
             mapped: Rgb::WHITE,
         };
@@ -228,7 +229,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             self.traces.meter.enter(Effect::MirrorsAndGlass);
             self.traces.meter.count(Effect::MirrorsAndGlass, 1);
             throughput *= sample.weight;
-            sampled.kind = ray_kind(&sample);
+            (sampled.kind, sampled.sets) = (ray_kind(&sample), surface.sets);
             sampled.width = sampled.width.after(met.distance);
             ray = surface.leaving(sample.wi, sampled.kind | g.lit.accel.lamp_bit());
             self.traces.rays.camera += 1;
@@ -252,7 +253,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             let [x, y] = shuffled_points(index, &seeds);
             for (lane, shadow) in shadows.iter_mut().enumerate() {
                 *shadow = self.shadow(lane, [rotate(self.keys[lane], index), x[lane], y[lane]]);
-                let traced = shadow.as_ref().filter(|s| s.casts_shadow && !g.lit.plan.transparency);
+                let traced = shadow.as_ref().filter(|s| s.can_be_blocked() && !g.lit.plan.transparency);
                 if let Some(shadow) = traced {
                     self.packet.set(lane, &shadow.ray, shadow.t_far);
                     self.traces.rays.shadow += 1;
@@ -361,134 +362,4 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             );
         }
     }
-
-    /// Adds what the gather rays of a packet bring: those that end on constant Lambert surfaces are read together, the
-    /// others followed one by one.
-    #[inline(always)]
-    fn receive(&mut self, pdfs: &[f32; LANES], index: u32) {
-        let g = self.gatherer;
-        let mut places = [E::Place::default(); LANES];
-        let mut weight = [Rgb::BLACK; LANES];
-        let mut read = [false; LANES];
-        let mut solid_angles = [0.0; LANES];
-        for lane in 0..LANES {
-            solid_angles[lane] = g.solid_angle(pdfs[lane]);
-        }
-        for lane in 0..LANES {
-            if !self.packet.is_set(lane) {
-                continue;
-            }
-            let (ray, solid_angle) = match self.others[lane] {
-                Some(ray) => (ray, ray.pdf.map_or(0.0, |pdf| g.solid_angle(pdf))),
-                None => (GatherRay::diffuse(self.lambert.weight[lane], Some(pdfs[lane])), solid_angles[lane]),
-            };
-            let hit = match self.packet.hit(lane) {
-                Some(hit) if g.lit.accel.is_lamp(hit.object) => self.cross_lamps(lane, &ray, solid_angle),
-                hit => hit,
-            };
-            // No closure: it would not be compiled for the wider instructions.
-            let readable = match hit {
-                Some(hit) if !ray.sharp => g.readable(&self.packet.ray(lane), &hit, solid_angle),
-                _ => None,
-            };
-            match readable {
-                Some(readable) => {
-                    places[lane] = readable.place;
-                    weight[lane] = ray.weight * readable.reflectance;
-                    read[lane] = true;
-                }
-                None => {
-                    let varying = hit
-                        .filter(|_| g.has_varying && !ray.sharp)
-                        .and_then(|hit| g.readable_varying(&self.packet.ray(lane), &hit, solid_angle));
-                    if let Some(readable) = varying {
-                        places[lane] = readable.place;
-                        weight[lane] = ray.weight * readable.reflectance;
-                        read[lane] = true;
-                    } else {
-                        self.receive_other(lane, &ray, hit, solid_angle, index);
-                    }
-                }
-            }
-        }
-        if E::DEFERS {
-            for lane in (0..LANES).filter(|&lane| read[lane]) {
-                let (place, weight) = (places[lane], weight[lane]);
-                self.traces.deferred.push(Deferred { place, weight, pixel: lane });
-            }
-            return;
-        }
-        let found = g.estimator.read_all(&places, &read);
-        for lane in 0..LANES {
-            self.samples[lane].indirect += weight[lane] * found[lane];
-        }
-    }
-
-    /// Adds the light of the lamps that the ray of a lane met first; gives what is behind them.
-    #[inline(never)]
-    fn cross_lamps(&mut self, lane: usize, gather_ray: &GatherRay, solid_angle: f32) -> Option<Hit> {
-        let ray = self.packet.ray(lane);
-        let sampled = self.sampled(lane, gather_ray, solid_angle);
-        let from = Receiver { p: ray.origin, normal: sampled.lit_side };
-        let (behind, light) = self.gatherer.cross_lamps(from, &ray, 0.0, sampled, &mut self.traces.meter);
-        self.add_met(lane, gather_ray, light);
-        behind
-    }
-
-    /// As `receive`, for a ray that meets light or anything but a constant Lambert surface, or is too short to be read.
-    #[inline(never)]
-    fn receive_other(
-        &mut self,
-        lane: usize,
-        gather_ray: &GatherRay,
-        hit: Option<Hit>,
-        solid_angle: f32,
-        index: u32,
-    ) {
-        let g = self.gatherer;
-        let mut rng = Rng::new(hash(self.keys[lane], u64::from(index) << 16 | 2));
-        let sampled = self.sampled(lane, gather_ray, solid_angle);
-        let (ray, mut end) = (self.packet.ray(lane), None);
-        let met = g.meet(ray, Some(hit), sampled, &mut rng, &mut self.traces.meter, &mut end);
-        self.add_met(lane, gather_ray, met.light);
-        if end.is_some() && g.lit.plan.follows() {
-            let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };
-            let weight = gather_ray.weight * met.through;
-            let mapped = self.share_of_mapped(lane, gather_ray);
-            let target = Target { traces: &mut self.traces, lane, weight };
-            let radiance = g.outgoing(&mut end, footprint, mapped, &mut rng, target);
-            self.samples[lane].indirect += weight * radiance;
-        }
-    }
-
-    /// How the gather ray of a lane was found.
-    fn sampled(&self, lane: usize, gather_ray: &GatherRay, solid_angle: f32) -> Sampled {
-        let lit_side = match &self.vertices[lane] {
-            Some(vertex) => vertex.surface.bsdf.lit_side(),
-            None => Some(self.lambert.ns[lane]),
-        };
-        Sampled {
-            pdf: gather_ray.pdf,
-            shares: self.gatherer.shares,
-            kind: gather_ray.kind,
-            light: self.gatherer.lit.plan.direct.then_some(Effect::DirectLight),
-            lit_side,
-            width: Width::of_solid_angle(solid_angle),
-            mapped: Rgb::WHITE,
-        }
-    }
-
-    /// Adds the light that a gather ray met. What a mirror shows is no direct light, though it belongs to the same layer of
-    /// the picture.
-    fn add_met(&mut self, lane: usize, gather_ray: &GatherRay, light: Rgb) {
-        let g = self.gatherer;
-        if g.lit.plan.direct || gather_ray.pdf.is_none() {
-            self.samples[lane].direct += gather_ray.weight * light * g.direct_share;
-        }
-    }
-}
-
-/// The widest solid angle a stratum of `rays` cosine-distributed rays covers: the outermost, at the horizon.
-pub(super) fn widest_stratum(rays: u32) -> f32 {
-    2.0 * PI / (rays as f32).powf(0.75)
 }

@@ -102,14 +102,19 @@ pub(super) struct Target<'t, P> {
 }
 
 impl<P: Copy> Target<'_, P> {
-    /// What is read at `place` times `throughput`: the answer, or black and a promise.
-    pub(super) fn read<E: Estimator<Place = P>>(&mut self, estimator: &E, place: P, throughput: Rgb) -> Rgb {
+    /// What is read at `place` times `throughput`: the answer, or black and a promise; `None` as in [`Estimator::read`].
+    pub(super) fn read<E: Estimator<Place = P>>(
+        &mut self,
+        estimator: &E,
+        place: P,
+        throughput: Rgb,
+    ) -> Option<Rgb> {
         if E::DEFERS {
             let weight = self.weight * throughput;
             self.traces.deferred.push(Deferred { place, weight, pixel: self.lane });
-            return Rgb::BLACK;
+            return Some(Rgb::BLACK);
         }
-        throughput * estimator.read(&place)
+        Some(throughput * estimator.read(&place)?)
     }
 
     /// As [`Estimator::radiance`] times `throughput`.
@@ -125,7 +130,7 @@ impl<P: Copy> Target<'_, P> {
         if E::DEFERS {
             let bsdf = &surface.bsdf;
             let place = estimator.place(surface.p, bsdf.frame.side(), bsdf.wo(), footprint)?;
-            return Some(self.read(estimator, place, throughput * reflectance::<E>(surface, lobes)));
+            return self.read(estimator, place, throughput * reflectance::<E>(surface, lobes));
         }
         Some(throughput * estimator.radiance(surface, lobes, footprint, rng)?)
     }

@@ -46,8 +46,13 @@ pub(super) struct ShadowRay {
     pub(super) t_far: f32,
     /// Radiance towards the viewer if the light is seen, weighted against BSDF samples.
     pub(super) radiance: Rgb,
-    /// False: the light passes through everything.
-    pub(super) casts_shadow: bool,
+}
+
+impl ShadowRay {
+    /// False where the light passes through everything.
+    pub(super) const fn can_be_blocked(&self) -> bool {
+        self.ray.mask != 0
+    }
 }
 
 /// The shadow ray for a light sample; `None` where the surface does not send this light to the viewer. Directions of the
@@ -74,8 +79,8 @@ pub(super) fn shadow_ray(
     };
     let cos = sample.wi.dot(bsdf.frame.ns).abs();
     let radiance = f * sample.radiance_over_pdf * (cos * weight);
-    let ray = surface.leaving(sample.wi, visibility::SHADOW);
-    Some(ShadowRay { ray, t_far: reach(sample.distance), radiance, casts_shadow: sample.casts_shadow })
+    let ray = surface.leaving(sample.wi, sample.blockers);
+    Some(ShadowRay { ray, t_far: reach(sample.distance), radiance })
 }
 
 /// As [`shadow_ray`], for a camera sample on a constant Lambert surface; the radiance is what the camera sees.
@@ -97,8 +102,8 @@ pub(super) fn lambert_shadow_ray(
         power_heuristic(shares.light * sample.pdf_solid_angle, shares.bsdf * pdf)
     };
     let radiance = lanes.weight[lane] * sample.radiance_over_pdf * (pdf * weight);
-    let ray = Ray::leaving(lanes.p[lane], lanes.ng[lane], sample.wi, visibility::SHADOW, lanes.time[lane]);
-    Some(ShadowRay { ray, t_far: reach(sample.distance), radiance, casts_shadow: sample.casts_shadow })
+    let ray = Ray::leaving(lanes.p[lane], lanes.ng[lane], sample.wi, sample.blockers, lanes.time[lane]);
+    Some(ShadowRay { ray, t_far: reach(sample.distance), radiance })
 }
 
 /// A shadow ray ends before the light's own surface.
@@ -109,7 +114,7 @@ fn reach(distance: f32) -> f32 {
 /// Share of light that reaches the end of a shadow ray through transparent surfaces.
 #[must_use]
 pub(super) fn transmittance<P>(lit: &LitScene<'_>, shadow: &ShadowRay, traces: &mut Traces<P>) -> Rgb {
-    if !shadow.casts_shadow {
+    if !shadow.can_be_blocked() {
         return Rgb::WHITE;
     }
     traces.meter.count_own(1);

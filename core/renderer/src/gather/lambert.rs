@@ -26,6 +26,8 @@ pub(super) struct LambertLanes {
     pub(super) ng: [Vec3; LANES],
     /// When each was seen, while the shutter is open.
     pub(super) time: Lanes,
+    /// Bit of the set of receivers of each object.
+    pub(super) sets: [u32; LANES],
     origin: [Lanes; 3],
     geometric: [Lanes; 3],
     /// Tangent, bitangent and shading normal, by axis.
@@ -42,6 +44,7 @@ impl Default for LambertLanes {
             ns: [Vec3::ZERO; LANES],
             ng: [Vec3::ZERO; LANES],
             time: [MIDDLE; LANES],
+            sets: [u32::MAX; LANES],
             origin: zero,
             geometric: zero,
             frame: [zero; 3],
@@ -77,7 +80,7 @@ impl LambertLanes {
 
     /// What lights a lane.
     pub(super) fn receiver(&self, lane: usize) -> Receiver {
-        Receiver { p: self.p[lane], normal: Some(self.ns[lane]) }
+        Receiver { p: self.p[lane], normal: Some(self.ns[lane]), sets: self.sets[lane] }
     }
 
     /// Aims one gather ray per lane at the points (x, y) of the unit square; gives the densities per solid angle.

@@ -22,6 +22,7 @@ mod pilot;
 mod pyramid_lookup;
 mod readable;
 mod readings;
+mod receive;
 mod stop;
 mod vertex;
 
@@ -46,7 +47,7 @@ use crate::settings::{GatherSampling, RenderSettings};
 use crate::stats::{RayCounts, StoppedBy};
 
 pub use audit::Auditor;
-use block::{Block, widest_stratum};
+use block::Block;
 use camera::camera_width;
 use convergence::Convergence;
 use deferred::{OpenTile, Traces};
@@ -219,6 +220,11 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             |sample: u32| (u64::from(sample) * u64::from(self.rays) / u64::from(self.camera_samples)) as u32;
         first(sample)..first(sample + 1)
     }
+}
+
+/// The widest solid angle a stratum of `rays` cosine-distributed rays covers: the outermost, at the horizon.
+fn widest_stratum(rays: u32) -> f32 {
+    std::f32::consts::TAU / (rays as f32).powf(0.75)
 }
 
 /// What a gather did.

@@ -39,6 +39,8 @@ pub(super) struct Sampled {
     pub(super) light: Option<Effect>,
     /// [`Bsdf::lit_side`](crate::bsdf::Bsdf::lit_side) of the surface it left.
     pub(super) lit_side: Option<Vec3>,
+    /// Bit of the set of receivers that its object is in; all bits for the camera.
+    pub(super) sets: u32,
     /// How wide the ray is.
     pub(super) width: Width,
     /// What lights count whose caustics are made of photons.
@@ -48,6 +50,11 @@ pub(super) struct Sampled {
 impl Sampled {
     fn sight(&self) -> Sight {
         Sight { kind: self.kind, mapped: self.mapped }
+    }
+
+    /// What it left, at `p`.
+    pub(super) fn receiver(&self, p: Vec3) -> Receiver {
+        Receiver { p, normal: self.lit_side, sets: self.sets }
     }
 
     fn weight(&self, pdf_light: f32) -> f32 {
@@ -97,7 +104,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
     ) -> Met {
         *end = None;
         let mut met = Met { light: Rgb::BLACK, distance: 0.0, through: Rgb::WHITE, hole: 0.0 };
-        let (from, lit) = (Receiver { p: ray.origin, normal: sampled.lit_side }, self.lit);
+        let (from, lit) = (sampled.receiver(ray.origin), self.lit);
         let mut known = first;
         for _ in 0..MAX_TRANSPARENT {
             let mut hit = known.take().unwrap_or_else(|| lit.accel.intersect(&ray));
@@ -119,7 +126,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             if !surface.bsdf.emission.is_black() && !is_hole {
                 let owner = meter.enter(Effect::EmissiveMeshes);
                 let pdf = lit.emitter_pdf(from, &ray, &hit, met.distance);
-                let share = lit.lights.share_of_mesh(hit.object, sampled.sight());
+                let share = lit.lights.share_of_mesh(from, hit.object, sampled.sight());
                 met.light += met.through * surface.bsdf.emission * share * sampled.weight(pdf);
                 meter.back(owner);
             }
@@ -235,15 +242,18 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             let readable = hit.filter(|_| !sample.is_delta).and_then(|hit| {
                 self.readable(&ray, &hit, 0.0).or_else(|| self.readable_varying(&ray, &hit, 0.0))
             });
-            if let Some(readable) = readable {
-                let throughput = throughput * readable.reflectance;
-                radiance += target.read(self.estimator, readable.place, throughput);
+            let read = readable.and_then(|readable| {
+                target.read(self.estimator, readable.place, throughput * readable.reflectance)
+            });
+            if let Some(read) = read {
+                radiance += read;
                 break;
             }
             let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
             let lit_side = surface.bsdf.lit_side();
             let (shares, width) = (Shares::EVEN, Width::NONE);
-            let sampled = Sampled { pdf, shares, kind, light, lit_side, width, mapped: on_the_way };
+            let (sets, mapped) = (surface.sets, on_the_way);
+            let sampled = Sampled { pdf, shares, kind, light, lit_side, sets, width, mapped };
             let met = self.meet(ray, Some(hit), sampled, rng, &mut target.traces.meter, end);
             if light.is_some() {
                 radiance += throughput * met.light;

@@ -53,12 +53,12 @@ impl Estimator for PyramidLookup<'_> {
     }
 
     #[inline(always)]
-    fn read(&self, place: &Place) -> Rgb {
+    fn read(&self, place: &Place) -> Option<Rgb> {
         self.pyramid.irradiance(place.p, place.class as usize, place.level as usize)
     }
 
     #[inline(always)]
-    fn read_all(&self, places: &[Place; LANES], set: &[bool; LANES]) -> [Rgb; LANES] {
+    fn read_all(&self, places: &[Place; LANES], set: &mut [bool; LANES]) -> [Rgb; LANES] {
         self.pyramid.irradiances(places, set)
     }
 
@@ -79,18 +79,18 @@ impl Estimator for PyramidLookup<'_> {
         let class = self.pyramid.class(side);
         let mut radiance = Rgb::BLACK;
         if bsdf.has(lobes.and(LobeSet::DIFFUSE)) {
-            let irradiance = self.pyramid.irradiance(surface.p, class, level);
+            let irradiance = self.pyramid.irradiance(surface.p, class, level)?;
             radiance += bsdf.diffuse_albedo() * irradiance * std::f32::consts::FRAC_1_PI;
         }
         if bsdf.has(lobes.and(LobeSet::TRANSLUCENT)) {
-            let irradiance = self.pyramid.irradiance(surface.p, self.pyramid.class(side.other()), level);
+            let irradiance = self.pyramid.irradiance(surface.p, self.pyramid.class(side.other()), level)?;
             radiance += bsdf.albedo(LobeSet::TRANSLUCENT) * irradiance * std::f32::consts::FRAC_1_PI;
         }
         if bsdf.has(LobeSet::ROUGH) {
-            let tint = surface.bsdf.specular_tint();
+            let tint = bsdf.specular_tint() * bsdf.rough_gain();
             let shift = [rng.draw() - 0.5, rng.draw() - 0.5];
             if lobes.intersects(LobeSet::ROUGH) {
-                radiance += tint * self.pyramid.glossy_radiance(surface.p, class, level, bsdf.wo(), shift);
+                radiance += tint * self.pyramid.glossy_radiance(surface.p, class, level, bsdf.wo(), shift)?;
             }
         }
         Some(radiance)

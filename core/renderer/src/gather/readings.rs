@@ -3,8 +3,8 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::block::widest_stratum;
 use super::camera::camera_ray;
+use super::widest_stratum;
 use crate::accel::Ray;
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::lit_scene::{LitScene, Surface, ray_kind};

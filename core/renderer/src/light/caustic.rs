@@ -10,7 +10,7 @@ use glam::Vec3;
 use super::casters::Casters;
 use super::select::{BELOW_ONE, Cdf};
 use super::shape::{Light, Shape};
-use super::{Emission, Lights};
+use super::{Emission, Lights, Receiver};
 use crate::color::Rgb;
 use crate::sampling::PhotonSampler;
 use crate::scene::visibility;
@@ -79,11 +79,14 @@ impl Lights {
         self.caustic.as_ref().is_some_and(|caustic| caustic.is_mapped[light])
     }
 
-    /// What the light of an emissive mesh counts.
+    /// What the light of an emissive mesh counts at a receiver.
     #[must_use]
-    pub fn share_of_mesh(&self, object: u32, sight: Sight) -> Rgb {
-        let light = self.light_of_object.get(object as usize).copied().flatten();
-        light.map_or(Rgb::WHITE, |light| self.share(light, sight))
+    pub fn share_of_mesh(&self, from: Receiver, object: u32, sight: Sight) -> Rgb {
+        match self.light_of_object.get(object as usize).copied().flatten() {
+            Some(light) if self.lights[light].receivers & from.sets == 0 => Rgb::BLACK,
+            Some(light) => self.share(light, sight),
+            None => Rgb::WHITE,
+        }
     }
 
     /// What a light counts.

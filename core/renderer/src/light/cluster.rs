@@ -28,6 +28,8 @@ pub(super) struct Bounds {
     pub distant: bool,
     /// Highest radiant intensity, summed (W·sr⁻¹ × squared length scale); for suns irradiance.
     pub intensity: f32,
+    /// Sets of objects that any of them lights.
+    pub receivers: u32,
 }
 
 impl Bounds {
@@ -42,6 +44,7 @@ impl Bounds {
             two_sided: false,
             distant: false,
             intensity,
+            receivers: u32::MAX,
         }
     }
 
@@ -61,6 +64,7 @@ impl Bounds {
             two_sided: self.two_sided || other.two_sided,
             distant: self.distant,
             intensity: self.intensity + other.intensity,
+            receivers: self.receivers | other.receivers,
         }
     }
 
@@ -111,6 +115,7 @@ pub(super) struct Cluster {
     two_sided: bool,
     distant: bool,
     intensity: f32,
+    receivers: u32,
 }
 
 impl Cluster {
@@ -133,11 +138,15 @@ impl Cluster {
             two_sided: bounds.two_sided,
             distant: bounds.distant,
             intensity: bounds.intensity,
+            receivers: bounds.receivers,
         }
     }
 
     /// About the irradiance the cluster gives; 0 only where there is none.
     pub(super) fn irradiance(&self, receiver: &Receiver) -> f32 {
+        if self.receivers & receiver.sets == 0 {
+            return 0.0;
+        }
         let Some((towards, distance_squared, [sin, cos])) = self.seen_from(receiver.p) else {
             return self.intensity / (self.radius * self.radius).max(1e-12);
         };
@@ -153,8 +162,12 @@ impl Cluster {
         self.intensity * leaving.max(LEAST_LEAVING) * arriving / distance_squared
     }
 
-    /// The highest cosine under which light from the cluster arrives; 1 where the receiver has no normal.
+    /// The highest cosine under which light from the cluster arrives; 1 where the receiver has no normal, 0 where it is not
+    /// lit by the cluster.
     pub(super) fn incidence(&self, receiver: &Receiver) -> f32 {
+        if self.receivers & receiver.sets == 0 {
+            return 0.0;
+        }
         match (receiver.normal, self.seen_from(receiver.p)) {
             (Some(normal), Some((towards, _, angle))) => cos_less(normal.dot(towards), angle).max(0.0),
             _ => 1.0,

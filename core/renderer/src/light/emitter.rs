@@ -112,6 +112,7 @@ impl MeshEmitter {
                 two_sided: true,
                 distant: false,
                 intensity: triangle.radiance.mean() * triangle.area,
+                receivers: u32::MAX,
             }
         })
     }

@@ -9,6 +9,7 @@ use super::select::Cdf;
 use super::shape::Shape;
 use super::{DirectSample, Lights, Receiver};
 use crate::color::Rgb;
+use crate::scene::visibility;
 
 impl Lights {
     /// What a ray that leaves the scene sees of the world, suns aside, and the pdf per solid angle with which
@@ -44,7 +45,7 @@ impl Lights {
             radiance_over_pdf: sample.radiance_over_pdf / probability,
             pdf_solid_angle: sample.pdf * probability,
             is_delta: false,
-            casts_shadow: true,
+            blockers: visibility::SHADOW,
             visibility: environment.sampled(),
             point: None,
             is_mapped: self.is_mapped(self.lights.len()),

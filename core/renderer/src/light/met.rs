@@ -10,6 +10,13 @@ use super::{Lights, Ray, Receiver};
 use crate::color::Rgb;
 
 impl Lights {
+    /// True where rays that are drawn from surfaces do not meet the light of an object.
+    #[must_use]
+    pub fn is_left_to_sampling(&self, object: u32) -> bool {
+        let light = self.light_of_object.get(object as usize).copied().flatten();
+        light.is_some_and(|light| self.lights[light].is_left_to_sampling())
+    }
+
     /// Pdf per solid angle with which [`Lights::sample_direct`] from `from` finds the direction `wi`, whose ray meets
     /// triangle `primitive` of `object` at distance `t`. 0 where the triangle does not emit.
     #[must_use]
@@ -38,8 +45,9 @@ impl Lights {
     }
 
     /// Calls back, for each lamp the ray meets at a distance in `span`, with its radiance and the pdf per solid angle
-    /// with which [`Lights::sample_direct`] from `from` finds this direction. Lamps do not block. Those hidden from the
-    /// ray's kind are skipped, as are suns and what `is_delta` stands for.
+    /// with which [`Lights::sample_direct`] from `from` finds this direction: infinite where rays that are drawn from
+    /// surfaces do not meet the lamp. Lamps do not block. Those hidden from the ray's kind and those that do not light the
+    /// receiver are skipped, as are suns and lamps that no ray meets.
     pub fn lamps_crossed(
         &self,
         from: impl Into<Receiver>,
@@ -51,7 +59,8 @@ impl Lights {
         let (receiver, sight) = (from.into(), sight.into());
         let ray = Ray { from: receiver.p, wi, span };
         for (index, light) in self.lights.iter().enumerate() {
-            if light.visibility & sight.kind == 0 || !light.can_be_met() {
+            let is_seen = light.visibility & sight.kind != 0 && light.receivers & receiver.sets != 0;
+            if !is_seen || !light.can_be_met() {
                 continue;
             }
             let crossing = match &light.shape {
@@ -60,11 +69,18 @@ impl Lights {
                 Shape::Sun(_) | Shape::Mesh(_) => None,
             };
             if let Some(crossing) = crossing {
-                let emitter = self.first_emitter[index];
                 let radiance = crossing.radiance * self.share(index, sight);
-                each(radiance, crossing.pdf * self.choice_probability(&receiver, emitter));
+                each(radiance, self.pdf_against(&receiver, index, crossing.pdf));
             }
         }
+    }
+
+    /// Pdf with which direct sampling finds what a ray met of a lamp that is not of many parts.
+    fn pdf_against(&self, receiver: &Receiver, light: usize, pdf: f32) -> f32 {
+        if self.lights[light].is_left_to_sampling() {
+            return f32::INFINITY;
+        }
+        pdf * self.choice_probability(receiver, self.first_emitter[light])
     }
 
     /// As [`Lights::lamps_crossed`], for the suns a ray that leaves the scene sees.
@@ -79,13 +95,12 @@ impl Lights {
         for &index in &self.suns {
             let light = &self.lights[index];
             let Shape::Sun(lamp) = &light.shape else { continue };
-            if light.visibility & sight.kind == 0 {
+            if light.visibility & sight.kind == 0 || light.receivers & receiver.sets == 0 {
                 continue;
             }
             if let Some(crossing) = lamp.crossing(wi) {
-                let emitter = self.first_emitter[index];
                 let radiance = crossing.radiance * self.share(index, sight);
-                each(radiance, crossing.pdf * self.choice_probability(&receiver, emitter));
+                each(radiance, self.pdf_against(&receiver, index, crossing.pdf));
             }
         }
     }

@@ -32,7 +32,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use crate::color::Rgb;
-use crate::scene::{Scene, World};
+use crate::scene::{Scene, World, visibility};
 use aim::Aim;
 pub use aim::Find;
 pub use casters::Casters;
@@ -70,8 +70,10 @@ pub struct Emission {
     /// Distance it must travel before it lights anything; what it meets earlier blocks it and gets nothing. 0 for all but
     /// soft point and spot lamps, which show less of themselves to near receivers.
     pub lit_from: f32,
-    /// False: the light passes through everything.
-    pub casts_shadow: bool,
+    /// Ray mask of what blocks it; 0 where it passes through everything.
+    pub blockers: u32,
+    /// Sets of objects that it lights.
+    pub receivers: u32,
     /// Index into [`Scene::lamps`]; `None` for emissive meshes and the world.
     pub lamp: Option<usize>,
     /// Ray kinds that see the light: a surface whose lobes are not among them is not lit by it directly.
@@ -95,11 +97,13 @@ pub struct Receiver {
     pub p: Vec3,
     /// Unit normal of the side that is lit; `None` where light from both sides counts.
     pub normal: Option<Vec3>,
+    /// Bit of the set that its object is in; all bits where every light counts.
+    pub sets: u32,
 }
 
 impl From<Vec3> for Receiver {
     fn from(p: Vec3) -> Self {
-        Self { p, normal: None }
+        Self { p, normal: None, sets: u32::MAX }
     }
 }
 
@@ -115,10 +119,10 @@ pub struct DirectSample {
     /// Pdf per solid angle, the choice of the light included; without meaning where `is_delta`.
     pub pdf_solid_angle: f32,
     /// True where no ray meets this light, so that this sample carries all of it: points of radius 0, suns of angle 0,
-    /// parallel area lamps, and lamps that cast no shadow.
+    /// parallel area lamps, and what is not blocked by everything.
     pub is_delta: bool,
-    /// False: the light passes through everything.
-    pub casts_shadow: bool,
+    /// Mask of the shadow ray; 0 where the light passes through everything.
+    pub blockers: u32,
     /// Ray kinds that see the light: lobes of other kinds are not lit by it.
     pub visibility: u32,
     /// Its caustics are made of photons.
@@ -226,7 +230,13 @@ impl Lights {
             if let Some(emitter) = MeshEmitter::new(number, object, &emission) {
                 *light = Some(lights.len());
                 let shape = Shape::Mesh(emitter);
-                lights.push(Light { shape, lamp: None, casts_shadow: true, visibility: object.visibility });
+                lights.push(Light {
+                    shape,
+                    lamp: None,
+                    blockers: object.links.shadow_mask(true),
+                    receivers: object.links.receivers,
+                    visibility: object.visibility,
+                });
             }
         }
         let ball = SceneBall::new(scene.bounds);
@@ -355,7 +365,8 @@ impl Lights {
             flux: photon.flux,
             normal: photon.normal,
             lit_from: photon.lit_from,
-            casts_shadow: light.is_none_or(|light| light.casts_shadow),
+            blockers: light.map_or(visibility::SHADOW, |light| light.blockers),
+            receivers: light.map_or(u32::MAX, |light| light.receivers),
             lamp: light.and_then(|light| light.lamp),
             visibility: light.map_or(self.world.visibility, |light| light.visibility),
             point: photon.point,
@@ -379,6 +390,9 @@ impl Lights {
         let probability = chosen.probability * (1.0 - of_world);
         let emitter = &self.emitters[chosen.index];
         let light = &self.lights[emitter.light as usize];
+        if light.receivers & receiver.sets == 0 {
+            return None;
+        }
         let sample = match &light.shape {
             Shape::Point(lamp) => lamp.sample(p, position)?,
             Shape::Area(lamp) => lamp.sample(p, position)?,
@@ -390,8 +404,8 @@ impl Lights {
             distance: sample.distance,
             radiance_over_pdf: sample.radiance_over_pdf / probability,
             pdf_solid_angle: sample.pdf * probability,
-            is_delta: sample.is_delta || !light.casts_shadow,
-            casts_shadow: light.casts_shadow,
+            is_delta: sample.is_delta || light.is_left_to_sampling(),
+            blockers: light.blockers,
             visibility: light.visibility,
             is_mapped: self.is_mapped(emitter.light as usize),
             point: sample.point.map(|point| point.chosen_with(probability)),

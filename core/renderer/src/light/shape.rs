@@ -10,7 +10,7 @@ use super::spot::SpotCone;
 use super::sun::SunLamp;
 use super::{is_in_reach, positive};
 use crate::color::Rgb;
-use crate::scene::{Lamp, LampShape};
+use crate::scene::{Lamp, LampShape, visibility};
 
 /// The kinds of light a surface can ask for.
 pub(super) enum Shape {
@@ -25,7 +25,10 @@ pub(super) struct Light {
     pub shape: Shape,
     /// Index into the scene's lamps; `None` for a mesh.
     pub lamp: Option<usize>,
-    pub casts_shadow: bool,
+    /// Mask of shadow rays; 0 where the light passes through everything.
+    pub blockers: u32,
+    /// Sets of objects that it lights.
+    pub receivers: u32,
     pub visibility: u32,
 }
 
@@ -48,7 +51,13 @@ impl Light {
             LampShape::Rectangle { size, spread } => Shape::Area(AreaLamp::new(lamp, size, spread, false)?),
             LampShape::Ellipse { size, spread } => Shape::Area(AreaLamp::new(lamp, size, spread, true)?),
         };
-        Some(Self { shape, lamp: Some(index), casts_shadow: lamp.casts_shadow, visibility: lamp.visibility })
+        Some(Self {
+            shape,
+            lamp: Some(index),
+            blockers: lamp.links.shadow_mask(lamp.casts_shadow),
+            receivers: lamp.links.receivers,
+            visibility: lamp.visibility,
+        })
     }
 
     pub(super) fn flux(&self, ball: &SceneBall) -> Rgb {
@@ -62,12 +71,14 @@ impl Light {
 
     /// Bounds of the lamp, or of each emitting triangle.
     pub(super) fn bounds(&self) -> Vec<Bounds> {
-        match &self.shape {
+        let mut bounds = match &self.shape {
             Shape::Point(lamp) => vec![lamp.bounds()],
             Shape::Area(lamp) => vec![lamp.bounds()],
             Shape::Sun(lamp) => vec![lamp.bounds()],
             Shape::Mesh(mesh) => mesh.bounds().collect(),
-        }
+        };
+        bounds.iter_mut().for_each(|bounds| bounds.receivers = self.receivers);
+        bounds
     }
 
     /// True where rays can meet the light. Light that passes through everything is left to direct sampling alone, since a
@@ -79,7 +90,13 @@ impl Light {
             Shape::Sun(lamp) => lamp.has_extent(),
             Shape::Mesh(_) => true,
         };
-        has_extent && self.casts_shadow
+        has_extent && self.blockers != 0
+    }
+
+    /// True where not everything blocks the light: a ray drawn from a surface would end at what the light passes through,
+    /// so that direct sampling alone brings it, and such rays meet it off mirrors and glass alone.
+    pub(super) const fn is_left_to_sampling(&self) -> bool {
+        self.blockers != visibility::SHADOW
     }
 
     /// What holds the lamp, where rays can meet it.

@@ -91,8 +91,8 @@ impl<'a> HitPoint<'a> {
         (p.as_dvec3() / space.scale + space.center).as_vec3()
     }
 
-    fn kind(&self, bit: u32) -> f32 {
-        f32::from(u8::from(self.mask & bit != 0))
+    fn kind(&self, bits: u32) -> f32 {
+        f32::from(u8::from(self.mask & bits != 0))
     }
 
     /// Scene units as metres.
@@ -164,7 +164,7 @@ impl Point for HitPoint<'_> {
             Quantity::ObjectIndex => number(self.object.info.index),
             Quantity::ObjectRandom => number(self.object.info.random),
             Quantity::IsCamera => number(self.kind(visibility::CAMERA)),
-            Quantity::IsShadow => number(self.kind(visibility::SHADOW)),
+            Quantity::IsShadow => number(self.kind(visibility::SHADOW | visibility::BLOCKERS)),
             Quantity::IsDiffuse => number(self.kind(visibility::DIFFUSE)),
             Quantity::IsGlossy => number(self.kind(visibility::GLOSSY)),
             Quantity::IsTransmission => number(self.kind(visibility::TRANSMISSION)),

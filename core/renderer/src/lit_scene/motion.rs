@@ -92,9 +92,13 @@ impl<'a> LitScene<'a> {
         turn(&still, &now) * ng
     }
 
-    /// See [`crate::light::Lights::emitter_pdf`]: for the triangle a ray met at a distance from the receiver.
+    /// See [`crate::light::Lights::emitter_pdf`]: for the triangle a ray met at a distance from the receiver. Infinite where
+    /// rays that are drawn from surfaces do not meet the light.
     #[must_use]
     pub fn emitter_pdf(&self, from: Receiver, ray: &Ray, hit: &Hit, distance: f32) -> f32 {
+        if self.lights.is_left_to_sampling(hit.object) {
+            return f32::INFINITY;
+        }
         if !self.moves(hit.object) {
             return self.lights.emitter_pdf(from, hit.object, hit.primitive, ray.direction, distance);
         }

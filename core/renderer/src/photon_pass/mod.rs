@@ -169,10 +169,12 @@ impl<S: PhotonSink> Tracer<'_, S> {
             let Some(hit) = self.lit.accel.intersect(&ray) else { break };
             travelled += hit.t;
             let visible_to = self.lit.accel.scene().objects[hit.object as usize].visibility;
+            let is_blocked = visible_to & emission.blockers != 0;
             if travelled >= emission.lit_from && visible_to & visibility::DIFFUSE != 0 {
-                segments += self.scatter(Arrival { ray, hit, flux, lobes }, &mut sampler, landed, meter);
+                let arrival = Arrival { ray, hit, flux, lobes, sets: emission.receivers, is_blocked };
+                segments += self.scatter(arrival, &mut sampler, landed, meter);
             }
-            if emission.casts_shadow && visible_to & visibility::SHADOW != 0 {
+            if is_blocked {
                 break;
             }
             let ng = self.lit.normal_met(&ray, &hit);
@@ -190,10 +192,12 @@ impl<S: PhotonSink> Tracer<'_, S> {
         meter: &mut Meter,
     ) -> u64 {
         let (mut segments, mut thrown) = (0, self.carry == Carry::All);
-        let Arrival { mut ray, mut hit, mut flux, mut lobes } = arrival;
+        let Arrival { mut ray, mut hit, mut flux, lobes: mut lit, mut sets, is_blocked: mut passes } =
+            arrival;
         for _ in 0..self.max_depth {
             let surface = self.lit.surface(&ray, hit, 0.0);
             let bsdf = &surface.bsdf;
+            let lobes = if sets & surface.sets == 0 { LobeSet::EMPTY } else { lit };
             if thrown && bsdf.has(lobes.and(LobeSet::READ)) {
                 let glossy = self.carry == Carry::All && bsdf.has(lobes.and(LobeSet::ROUGH));
                 let at = if glossy { [sampler.draw(), sampler.draw()] } else { [0.0; 2] };
@@ -210,7 +214,10 @@ impl<S: PhotonSink> Tracer<'_, S> {
             let u_lobe = sampler.draw();
             let u = [sampler.draw(), sampler.draw()];
             let followed = if self.carry == Carry::All { lobes } else { lobes.and(LobeSet::FOLLOWED) };
-            let Some(next) = self.next_direction(&surface.bsdf, ray.direction, followed, u_lobe, u) else {
+            let through = if passes { bsdf.transparency } else { Rgb::BLACK };
+            let Some(next) =
+                self.next_direction(bsdf, through, ray.direction, followed, [u_lobe, u[0], u[1]])
+            else {
                 break;
             };
             // Flux over index squared is what refraction conserves.
@@ -221,8 +228,9 @@ impl<S: PhotonSink> Tracer<'_, S> {
             flux = flux * next.weight * (1.0 / survival);
             ray = surface.leaving(next.direction, next.kind);
             if !next.straight {
-                (lobes, thrown) = (LobeSet::ALL, true);
+                (lit, sets, thrown) = (LobeSet::ALL, u32::MAX, true);
             }
+            passes = true;
             segments += 1;
             let owner = meter.enter_if(next.effect.filter(|_| self.carry == Carry::All));
             meter.count_own(1);
@@ -239,15 +247,15 @@ impl<S: PhotonSink> Tracer<'_, S> {
     fn next_direction(
         &self,
         bsdf: &crate::bsdf::Bsdf<'_>,
+        transparency: Rgb,
         direction: Vec3,
         lobes: LobeSet,
-        u_lobe: f32,
-        u: [f32; 2],
+        [u_lobe, u0, u1]: [f32; 3],
     ) -> Option<Next> {
-        let (through, scattered) = (bsdf.transparency.mean(), bsdf.albedo(lobes).mean());
+        let (through, scattered) = (transparency.mean(), bsdf.albedo(lobes).mean());
         let chance = if through > 0.0 { through / (through + scattered) } else { 0.0 };
         if u_lobe < chance {
-            let weight = bsdf.transparency * (1.0 / chance);
+            let weight = transparency * (1.0 / chance);
             return Some(Next {
                 direction,
                 weight,
@@ -258,7 +266,7 @@ impl<S: PhotonSink> Tracer<'_, S> {
             });
         }
         let u_lobe = ((u_lobe - chance) / (1.0 - chance)).min(1.0 - f32::EPSILON);
-        let sample = bsdf.sample(u_lobe, u, lobes, TransportMode::Importance)?;
+        let sample = bsdf.sample(u_lobe, [u0, u1], lobes, TransportMode::Importance)?;
         let weight = sample.weight * (1.0 / (1.0 - chance));
         Some(Next {
             direction: sample.wi,
@@ -271,12 +279,16 @@ impl<S: PhotonSink> Tracer<'_, S> {
     }
 }
 
-/// A photon on its way from the light to a hit, and the lobes it lights there.
+/// A photon on its way from the light to a hit.
 struct Arrival {
     ray: Ray,
     hit: Hit,
     flux: Rgb,
+    /// Lobes that it lights, and the sets of objects that it lights.
     lobes: LobeSet,
+    sets: u32,
+    /// False: it goes on behind the surface as if that were not there.
+    is_blocked: bool,
 }
 
 struct Next {

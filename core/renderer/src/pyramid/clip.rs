@@ -20,29 +20,85 @@ pub(super) struct Part<'a> {
 }
 
 /// Calls `add(level, cell, part)` for every cell in which light of this triangle is stored: the finest that exist where
-/// the parts of the triangle lie. The areas add up to the triangle's (Sutherland and Hodgman 1974, halving cells).
-pub(super) fn clip_triangle(grid: &Grid, corners: [DVec3; 3], add: &mut impl FnMut(usize, IVec3, Part<'_>)) {
-    let offsets = corners.map(|p| grid.offset_f64(p));
-    let polygon: Polygon = offsets.into_iter().collect();
-    let (low, high) = extent(&polygon);
-    // The finest cell that holds the whole triangle saves the cuts above it.
-    for level in (0..=grid.base()).rev() {
-        let cell_size = cell_size(grid, level);
+/// the parts of the triangle lie, or coarser ones that `is_whole` names by level and place in the level's box. The areas add up to the triangle's (Sutherland and
+/// Hodgman 1974, halving cells).
+pub(super) fn clip_triangle(
+    grid: &Grid,
+    corners: [DVec3; 3],
+    is_whole: impl Fn(usize, IVec3) -> bool,
+    mut add: impl FnMut(usize, IVec3, Part<'_>),
+) {
+    Cutter { grid, is_whole, add: &mut add }.triangle(corners);
+}
+
+/// Down to the finest cells, for [`clip_triangle`].
+pub(super) const fn to_the_finest(_: usize, _: IVec3) -> bool {
+    false
+}
+
+/// Cuts one triangle.
+struct Cutter<'a, W, A> {
+    grid: &'a Grid,
+    is_whole: W,
+    add: &'a mut A,
+}
+
+impl<W: Fn(usize, IVec3) -> bool, A: FnMut(usize, IVec3, Part<'_>)> Cutter<'_, W, A> {
+    fn triangle(&mut self, corners: [DVec3; 3]) {
+        let offsets = corners.map(|p| self.grid.offset_f64(p));
+        let polygon: Polygon = offsets.into_iter().collect();
+        let (low, high) = extent(&polygon);
+        // The finest cell that holds the whole triangle saves the cuts above it.
+        for level in (0..=self.grid.base()).rev() {
+            let cell_size = cell_size(self.grid, level);
+            let (first, last) = ((low / cell_size).floor().as_ivec3(), (high / cell_size).floor().as_ivec3());
+            if first == last && self.grid.levels[level].within(first).is_some() {
+                return self.descend(level, first, &polygon);
+            }
+        }
+        let cell_size = cell_size(self.grid, 0);
         let (first, last) = ((low / cell_size).floor().as_ivec3(), (high / cell_size).floor().as_ivec3());
-        if first == last && grid.levels[level].within(first).is_some() {
-            return descend(grid, level, first, &polygon, add);
+        for z in first.z..=last.z {
+            let slab = cut_range(polygon.clone(), 2, f64::from(z) * cell_size, f64::from(z + 1) * cell_size);
+            for y in first.y..=last.y {
+                let column =
+                    cut_range(slab.clone(), 1, f64::from(y) * cell_size, f64::from(y + 1) * cell_size);
+                for x in first.x..=last.x {
+                    let (low, high) = (f64::from(x) * cell_size, f64::from(x + 1) * cell_size);
+                    self.descend(0, IVec3::new(x, y, z), &cut_range(column.clone(), 0, low, high));
+                }
+            }
         }
     }
-    let cell_size = cell_size(grid, 0);
-    let (first, last) = ((low / cell_size).floor().as_ivec3(), (high / cell_size).floor().as_ivec3());
-    for z in first.z..=last.z {
-        let slab = cut_range(polygon.clone(), 2, f64::from(z) * cell_size, f64::from(z + 1) * cell_size);
-        for y in first.y..=last.y {
-            let column = cut_range(slab.clone(), 1, f64::from(y) * cell_size, f64::from(y + 1) * cell_size);
-            for x in first.x..=last.x {
-                let part =
-                    cut_range(column.clone(), 0, f64::from(x) * cell_size, f64::from(x + 1) * cell_size);
-                descend(grid, 0, IVec3::new(x, y, z), &part, add);
+
+    fn descend(&mut self, level: usize, lattice: IVec3, polygon: &Polygon) {
+        if polygon.len() < 3 {
+            return;
+        }
+        let Some(cell) = self.grid.levels[level].within(lattice) else { return };
+        if self.grid.is_divided(level, lattice) && !(self.is_whole)(level, cell) {
+            return self.halve(level + 1, lattice << 1_i32, 0, polygon);
+        }
+        let part = measure(polygon);
+        if part.area > 0.0 {
+            (self.add)(level, cell, part);
+        }
+    }
+
+    /// Cuts a polygon in the middle of a coarser cell, across one axis after the other; `child` is the lowest of the cells
+    /// that are still possible. What is not cut is not copied.
+    fn halve(&mut self, level: usize, child: IVec3, axis: usize, polygon: &Polygon) {
+        if axis == 3 {
+            return self.descend(level, child, polygon);
+        }
+        let mut upper = child;
+        upper[axis] += 1;
+        match cut(polygon, axis, f64::from(upper[axis]) * cell_size(self.grid, level)) {
+            Cut::Below => self.halve(level, child, axis + 1, polygon),
+            Cut::Above => self.halve(level, upper, axis + 1, polygon),
+            Cut::Both([below, above]) => {
+                self.halve(level, child, axis + 1, &below);
+                self.halve(level, upper, axis + 1, &above);
             }
         }
     }
@@ -50,51 +106,6 @@ pub(super) fn clip_triangle(grid: &Grid, corners: [DVec3; 3], add: &mut impl FnM
 
 fn cell_size(grid: &Grid, level: usize) -> f64 {
     f64::from(grid.levels[level].cell_size)
-}
-
-fn descend(
-    grid: &Grid,
-    level: usize,
-    lattice: IVec3,
-    polygon: &Polygon,
-    add: &mut impl FnMut(usize, IVec3, Part<'_>),
-) {
-    if polygon.len() < 3 {
-        return;
-    }
-    let Some(cell) = grid.levels[level].within(lattice) else { return };
-    if grid.is_divided(level, lattice) {
-        return halve(grid, level + 1, lattice << 1_i32, 0, polygon, add);
-    }
-    let part = measure(polygon);
-    if part.area > 0.0 {
-        add(level, cell, part);
-    }
-}
-
-/// Cuts a polygon in the middle of a coarser cell, across one axis after the other; `child` is the lowest of the cells
-/// that are still possible. What is not cut is not copied.
-fn halve(
-    grid: &Grid,
-    level: usize,
-    child: IVec3,
-    axis: usize,
-    polygon: &Polygon,
-    add: &mut impl FnMut(usize, IVec3, Part<'_>),
-) {
-    if axis == 3 {
-        return descend(grid, level, child, polygon, add);
-    }
-    let mut upper = child;
-    upper[axis] += 1;
-    match cut(polygon, axis, f64::from(upper[axis]) * cell_size(grid, level)) {
-        Cut::Below => halve(grid, level, child, axis + 1, polygon, add),
-        Cut::Above => halve(grid, level, upper, axis + 1, polygon, add),
-        Cut::Both([below, above]) => {
-            halve(grid, level, child, axis + 1, &below, add);
-            halve(grid, level, upper, axis + 1, &above, add);
-        }
-    }
 }
 
 /// Where a polygon lies of a plane.
@@ -179,7 +190,7 @@ mod tests {
 
     fn total(corners: [DVec3; 3]) -> (f64, usize) {
         let (mut sum, mut cells) = (0.0, BTreeMap::new());
-        clip_triangle(&grid(), corners, &mut |level, cell, part| {
+        clip_triangle(&grid(), corners, to_the_finest, |level, cell, part| {
             sum += part.area;
             *cells.entry((level, cell.to_array())).or_insert(0) += 1;
         });

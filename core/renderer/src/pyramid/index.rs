@@ -126,6 +126,19 @@ impl LevelIndex {
         self.place(brick, bit, class)
     }
 
+    /// Whether a cell holds no more than the two sides of one surface, as far as its classes tell.
+    #[must_use]
+    pub fn is_alone(&self, cell: IVec3) -> bool {
+        let (brick, bit) = self.brick(cell);
+        if brick == NO_BRICK {
+            return true;
+        }
+        let Slot([fronts, backs]) = self.slots[brick as usize];
+        let classes = (fronts.count_ones() + backs.count_ones()) as usize;
+        let masks = &self.slots[brick as usize + 1..][..classes];
+        masks.iter().filter(|Slot([mask, _])| mask >> bit & 1 == 1).count() <= 2
+    }
+
     /// Memory (bytes).
     #[must_use]
     pub const fn bytes(&self) -> usize {
@@ -161,6 +174,11 @@ mod tests {
             let (cell, class) = key.cell(&level);
             assert_eq!(CellKey::new(&level, cell, class), *key);
             assert_eq!(index.find(cell, class), Some(place));
+        }
+        for key in &keys {
+            let (cell, _) = key.cell(&level);
+            let surfaces = (0..CLASSES as usize).filter(|&class| index.find(cell, class).is_some());
+            assert_eq!(index.is_alone(cell), surfaces.count() <= 2);
         }
         for z in 0..level.size.z {
             for class in 0..CLASSES as usize {

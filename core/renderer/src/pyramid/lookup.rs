@@ -39,18 +39,22 @@ impl Deref for View<'_> {
 
 impl<'a> View<'a> {
     /// Irradiance (W·m⁻²) at `p` on a surface of class `class`, averaged over a cell of level `level`, or of the finest
-    /// coarser level that reaches there and knows. Black where no light arrives.
+    /// coarser level that reaches there and knows. Black where no light arrives; `None` where the cell is mixed.
     #[must_use]
     #[inline]
-    pub fn irradiance(&self, p: Vec3, class: usize, level: usize) -> Rgb {
-        self.find(p, class, level).map_or(Rgb::BLACK, Cell::irradiance)
+    pub fn irradiance(&self, p: Vec3, class: usize, level: usize) -> Option<Rgb> {
+        match self.find(p, class, level) {
+            Some(cell) if cell.is_mixed() => None,
+            Some(cell) => Some(cell.irradiance()),
+            None => Some(Rgb::BLACK),
+        }
     }
 
     /// [`View::irradiance`] of several places at once, where `wanted`: one step for all before the next, so that the
-    /// memory is waited for once and not once per place.
+    /// memory is waited for once and not once per place. Those in mixed cells are black, and wanted no more.
     #[must_use]
     #[inline(always)]
-    pub fn irradiances<const N: usize>(&self, at: &[Place; N], wanted: &[bool; N]) -> [Rgb; N] {
+    pub fn irradiances<const N: usize>(&self, at: &[Place; N], wanted: &mut [bool; N]) -> [Rgb; N] {
         let mut bricks = [(0, NO_BRICK, 0); N];
         for i in (0..N).filter(|&i| wanted[i]) {
             let located = self.pyramid.grid.locate(self.pyramid.grid.offset(at[i].p), at[i].level as usize);
@@ -65,17 +69,23 @@ impl<'a> View<'a> {
             places[i] = self.pyramid.levels[level].index.place(brick, bit, at[i].class as usize);
         }
         let mut out = [Rgb::BLACK; N];
-        for i in (0..N).filter(|&i| wanted[i]) {
-            out[i] = match places[i].map(|place| &self.pyramid.levels[bricks[i].0].cells[self.set][place]) {
-                Some(cell) if !cell.is_mixed() => cell.irradiance(),
+        for i in 0..N {
+            if !wanted[i] {
+                continue;
+            }
+            let found = match places[i].map(|place| &self.pyramid.levels[bricks[i].0].cells[self.set][place])
+            {
+                Some(cell) if !cell.is_mixed() => Some(cell.irradiance()),
                 _ => self.irradiance(at[i].p, at[i].class as usize, at[i].level as usize),
             };
+            wanted[i] = found.is_some();
+            out[i] = found.unwrap_or(Rgb::BLACK);
         }
         out
     }
 
     /// Radiance (W·m⁻²·sr⁻¹) of the glossy surfaces of class `class` at `p` towards the unit vector `direction`, divided by
-    /// their tint; `shift` in [-½, ½]² as in [`super::DirectionBins::bin`].
+    /// their tint; `shift` in [-½, ½]² as in [`super::DirectionBins::bin`]. `None` where the cell is mixed.
     #[must_use]
     pub fn glossy_radiance(
         &self,
@@ -84,9 +94,13 @@ impl<'a> View<'a> {
         level: usize,
         direction: Vec3,
         shift: [f32; 2],
-    ) -> Rgb {
-        let glossy = self.find(p, class, level).and_then(Cell::glossy);
-        glossy.map_or(Rgb::BLACK, |number| self.pyramid.store.radiance(number, self.set, direction, shift))
+    ) -> Option<Rgb> {
+        let cell = self.find(p, class, level);
+        if cell.is_some_and(Cell::is_mixed) {
+            return None;
+        }
+        let radiance = |number| self.pyramid.store.radiance(number, self.set, direction, shift);
+        Some(cell.and_then(Cell::glossy).map_or(Rgb::BLACK, radiance))
     }
 
     /// The cell to read; `None` where it is dark.

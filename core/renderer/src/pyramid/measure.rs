@@ -3,22 +3,29 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-use super::clip::{Part, clip_triangle};
+use super::clip::{Part, clip_triangle, to_the_finest};
 use super::grid::Grid;
 use super::index::CellKey;
 use super::layout::Layout;
-use super::surfaces::CellSurface;
+use super::surfaces::{CellSurface, OpenSum};
 use super::{NormalClasses, SidePoint, Surroundings};
 use crate::math::Side;
+use crate::sampling::{Rng, hash};
+
+/// Area that one point speaks for, as a share of a cell's face. Of smaller parts of a triangle only so many are asked about.
+const POINT: f64 = 0.1;
 
 /// Parts of a triangle below this share of a cell's face are open or hidden as a whole.
-const SMALL_PART: f64 = 0.1;
+const SMALL_PART: f64 = 0.25;
 
 /// Points after which it is time to ask. Which points are asked together depends on the triangles alone, never on threads.
 const TOGETHER: usize = 512;
+
+/// Sides of parts of triangles in a batch, about: enough for so many points.
+const PARTS: f64 = 2048.0;
 
 /// Area unit: sums over the whole scene stay exact in 63 bits, and a 10⁻¹² part of the scene still counts.
 const AREA_BITS: i32 = 48;
@@ -42,7 +49,7 @@ impl Batches {
         let (mut ranges, mut first, mut parts) = (Vec::new(), 0, 0.0);
         for (i, area) in areas.iter().enumerate() {
             parts += 1.0 + area / finest;
-            if 2.0 * parts > TOGETHER as f64 || i + 1 == areas.len() {
+            if 2.0 * parts > PARTS || i + 1 == areas.len() {
                 ranges.push(first..i + 1);
                 (first, parts) = (i + 1, 0.0);
             }
@@ -67,7 +74,7 @@ impl Batches {
             let mut keys: Vec<(usize, CellKey)> = Vec::new();
             for triangle in range.clone().map(|i| scene.triangle(i)) {
                 let sides = Side::both(triangle.normal).map(|side| classes.of(side));
-                clip_triangle(grid, triangle.corners, &mut |level, cell, part| {
+                clip_triangle(grid, triangle.corners, to_the_finest, |level, cell, part| {
                     if self.units(part.area) > 0 {
                         keys.extend(
                             sides.map(|class| (level, CellKey::new(&grid.levels[level], cell, class))),
@@ -101,7 +108,7 @@ impl Batches {
     ) {
         self.ranges.par_iter().for_each(|range| {
             for triangle in range.clone().map(|i| scene.triangle(i)).filter(|triangle| triangle.glossy) {
-                clip_triangle(&layout.grid, triangle.corners, &mut |level, cell, part| {
+                clip_triangle(&layout.grid, triangle.corners, to_the_finest, |level, cell, part| {
                     for side in Side::both(triangle.normal) {
                         let class = layout.classes.of(side);
                         let Some(place) = layout.levels[level].index.find(cell, class) else { continue };
@@ -121,16 +128,17 @@ fn quantized_area(corners: [DVec3; 3]) -> f64 {
     (area * 2.0_f64.powi(AREA_BITS)).round() * 2.0_f64.powi(-AREA_BITS)
 }
 
-/// Calls `add(level, place, [open, hidden])` with the surface that light can reach and that is hidden, part by part, for the
-/// cells that are `lit`. `None` when cancelled.
+/// Adds the surface of cells that light came to, or to a cell around them, to `sums`, and what is known of its openness.
+/// Surface where no light came is added to the largest cell that none came to, and asked about as coarsely. `lit` tells of
+/// every cell whether light came to it. `None` when cancelled.
 pub(super) fn measure(
     layout: &Layout,
     lit: &[Vec<bool>],
     scene: &impl Surroundings,
-    add: &(impl Fn(usize, usize, [CellSurface; 2]) + Sync),
+    sums: &[Vec<OpenSum>],
 ) -> Option<()> {
     layout.batches.ranges.par_iter().try_for_each(|range| {
-        let mut pending = Pending { layout, lit, scene, add, points: Vec::new(), parts: Vec::new() };
+        let mut pending = Pending { layout, lit, scene, sums, points: Vec::new(), asked: Vec::new() };
         for i in range.clone() {
             pending.add_triangle(i);
         }
@@ -139,37 +147,47 @@ pub(super) fn measure(
     })
 }
 
-/// One side of a part of a triangle that waits to be asked about.
-struct PendingPart {
+/// What a point that waits to be asked about speaks for.
+struct Asked {
     level: usize,
     place: usize,
-    area: f64,
-    surface: CellSurface,
-    /// Number of its points, the next ones.
-    points: usize,
+    /// In units.
+    area: i64,
 }
 
 /// What a batch of triangles adds.
-struct Pending<'a, S, A> {
+struct Pending<'a, S> {
     layout: &'a Layout,
     lit: &'a [Vec<bool>],
     scene: &'a S,
-    add: &'a A,
-    /// Points, and what area each stands for.
-    points: Vec<(SidePoint, f64)>,
-    parts: Vec<PendingPart>,
+    sums: &'a [Vec<OpenSum>],
+    points: Vec<SidePoint>,
+    /// By point.
+    asked: Vec<Asked>,
 }
 
-impl<S: Surroundings, A: Fn(usize, usize, [CellSurface; 2])> Pending<'_, S, A> {
+impl<S: Surroundings> Pending<'_, S> {
     fn add_triangle(&mut self, i: usize) {
         let triangle = self.scene.triangle(i);
         let sides = Side::both(triangle.normal).map(|side| (side, self.layout.classes.of(side)));
-        clip_triangle(&self.layout.grid, triangle.corners, &mut |level, cell, part| {
+        let (layout, lit) = (self.layout, self.lit);
+        let is_dark = |level: usize, cell: IVec3| {
+            let place = |class| layout.levels[level].index.find(cell, class);
+            sides.iter().all(|&(_, class)| place(class).is_none_or(|place| !lit[level][place]))
+        };
+        clip_triangle(&layout.grid, triangle.corners, is_dark, |level, cell, part| {
+            let mut is_alone = None;
             for (side, class) in sides {
-                let place = self.layout.levels[level].index.find(cell, class);
-                if let Some(place) = place.filter(|&place| self.lit[level][place]) {
-                    self.add_part(level, place, &part, side, triangle.glossy);
-                }
+                let place = layout.levels[level].index.find(cell, class);
+                let Some((of, place)) = place.and_then(|place| self.counted_in(level, place)) else {
+                    continue;
+                };
+                let surface = self.surface(&part, side, triangle.glossy);
+                self.sums[of][place].add(&surface);
+                let in_several = of < level
+                    || layout.grid.is_divided(level, layout.grid.levels[level].lattice(cell))
+                    || !*is_alone.get_or_insert_with(|| layout.levels[level].index.is_alone(cell));
+                self.add_points((of, place), &part, surface.area, side, in_several);
             }
             if self.points.len() >= TOGETHER {
                 self.ask();
@@ -177,45 +195,75 @@ impl<S: Surroundings, A: Fn(usize, usize, [CellSurface; 2])> Pending<'_, S, A> {
         });
     }
 
-    /// Small parts are open or not as their center is, large ones as the triangles around their center are.
-    fn add_part(&mut self, level: usize, place: usize, part: &Part<'_>, side: Side, glossy: bool) {
-        let (grid, batches) = (&self.layout.grid, &self.layout.batches);
-        let cell_size = grid.levels[level].cell_size.max(grid.base_cell_size());
-        let point = |offset: DVec3| SidePoint { p: grid.position(offset.as_vec3()), side, cell_size };
-        let before = self.points.len();
-        if part.area < SMALL_PART * f64::from(grid.levels[level].cell_size).powi(2) {
-            self.points.push((point(part.centroid), part.area));
-        } else {
-            let corners = part.corners;
-            self.points.extend((0..corners.len()).map(|i| {
-                let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
-                let area = 0.5 * (a - part.centroid).cross(b - part.centroid).length();
-                (point((a + b + part.centroid) / 3.0), area)
-            }));
+    /// The cell that surface of a cell is added to: itself, or the largest around it that no light came to.
+    fn counted_in(&self, mut level: usize, mut place: usize) -> Option<(usize, usize)> {
+        while !self.lit[level][place] {
+            let parent = self.layout.parent(level, place)?;
+            if self.lit[level - 1][parent] {
+                break;
+            }
+            (level, place) = (level - 1, parent);
         }
+        Some((level, place))
+    }
+
+    fn surface(&self, part: &Part<'_>, side: Side, glossy: bool) -> CellSurface {
+        let batches = &self.layout.batches;
         let units = |v: DVec3| (v * part.area).to_array().map(|c| batches.units(c));
         let area = batches.units(part.area);
-        let surface = CellSurface {
+        CellSurface {
             area,
             normal: units(side.normal.as_dvec3()),
             centroid: units(part.centroid),
             glossy_area: if glossy { area } else { 0 },
-        };
-        let points = self.points.len() - before;
-        self.parts.push(PendingPart { level, place, area: part.area, surface, points });
+        }
     }
 
-    /// Asks about the points that wait, and adds their parts to the cells.
-    #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "a share of the area")]
+    /// Small parts are open or not as the center of some of them is, which ones being left to chance. Of large ones each
+    /// triangle around the center is asked about, unless the part is alone in its cell.
+    fn add_points(
+        &mut self,
+        (level, place): (usize, usize),
+        part: &Part<'_>,
+        area: i64,
+        side: Side,
+        several: bool,
+    ) {
+        let layout = self.layout;
+        let (grid, batches) = (&layout.grid, &layout.batches);
+        let mut ask = |offset: DVec3, area: i64| {
+            let offset = offset.as_vec3();
+            let finest = grid.locate(offset, grid.base()).map_or(0, |(level, _)| level);
+            let cell_size = grid.levels[finest].cell_size;
+            self.points.push(SidePoint { p: grid.position(offset), side, cell_size });
+            self.asked.push(Asked { level, place, area });
+        };
+        let face = f64::from(grid.levels[level].cell_size).powi(2);
+        let point = POINT * face;
+        if part.area < point {
+            // Chance belongs to the part, whatever thread cuts it.
+            let bits = part.centroid.to_array().iter().fold(0, |bits, c| hash(bits, c.to_bits()));
+            if f64::from(Rng::new(bits).draw()) * point < part.area {
+                ask(part.centroid, batches.units(point));
+            }
+        } else if several && part.area >= SMALL_PART * face {
+            let corners = part.corners;
+            for (i, &a) in corners.iter().enumerate() {
+                let b = corners[(i + 1) % corners.len()];
+                let area = 0.5 * (a - part.centroid).cross(b - part.centroid).length();
+                ask((a + b + part.centroid) / 3.0, batches.units(area));
+            }
+        } else {
+            ask(part.centroid, area);
+        }
+    }
+
+    /// Asks about the points that wait.
     fn ask(&mut self) {
-        let points: Vec<SidePoint> = self.points.iter().map(|(point, _)| *point).collect();
-        let open = self.scene.open(&points);
-        let mut answers = self.points.drain(..).zip(open);
-        for PendingPart { level, place, area, surface, points } in self.parts.drain(..) {
-            let areas = answers.by_ref().take(points).map(|((_, area), open)| if open { area } else { 0.0 });
-            let share = (areas.sum::<f64>() / area).min(1.0);
-            let open = surface.part((surface.area as f64 * share).round() as i64);
-            (self.add)(level, place, [open, surface.without(&open)]);
+        let open = self.scene.open(&self.points);
+        self.points.clear();
+        for (Asked { level, place, area }, open) in self.asked.drain(..).zip(open) {
+            self.sums[level][place].add_answer(area, open);
         }
     }
 }

@@ -36,6 +36,9 @@ pub(super) fn mixed_cells(
         for place in cells.clone() {
             let Some(parent) = layout.parent(level, place) else { continue };
             let area = |place: usize| surfaces[place].area;
+            if area(place) == 0 {
+                continue;
+            }
             if largest[parent].is_none_or(|other| area(place) > area(other)) {
                 largest[parent] = Some(place);
             }
@@ -46,7 +49,10 @@ pub(super) fn mixed_cells(
         let flags: Vec<AtomicBool> = largest.iter().map(|_| AtomicBool::new(false)).collect();
         cells.into_par_iter().for_each(|place| {
             let Some(parent) = layout.parent(level, place) else { return };
-            if sums[level - 1][parent].count == 0 || flags[parent].load(Ordering::Relaxed) {
+            if sums[level - 1][parent].count == 0
+                || surfaces[place].area == 0
+                || flags[parent].load(Ordering::Relaxed)
+            {
                 return;
             }
             let Some(largest) = largest[parent] else { return };

@@ -41,7 +41,7 @@ impl CellSurface {
 
     /// What `area` of a surface that is the same everywhere amounts to.
     #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "a share of the area")]
-    pub(super) fn part(&self, area: i64) -> Self {
+    fn part(&self, area: i64) -> Self {
         let share = |value: i64| (value as f64 * (area as f64 / self.area.max(1) as f64)).round() as i64;
         Self {
             area,
@@ -51,20 +51,14 @@ impl CellSurface {
         }
     }
 
-    /// To take it away from a sum.
-    fn negative(&self) -> Self {
-        Self {
-            area: -self.area,
-            normal: self.normal.map(|c| -c),
-            centroid: self.centroid.map(|c| -c),
-            glossy_area: -self.glossy_area,
-        }
-    }
-
     /// The rest of it without `part`.
-    pub(super) fn without(mut self, part: &Self) -> Self {
-        self.add(&part.negative());
-        self
+    fn without(&self, part: &Self) -> Self {
+        Self {
+            area: self.area - part.area,
+            normal: std::array::from_fn(|c| self.normal[c] - part.normal[c]),
+            centroid: std::array::from_fn(|c| self.centroid[c] - part.centroid[c]),
+            glossy_area: self.glossy_area - part.glossy_area,
+        }
     }
 
     /// True when both are flat, look at each other and lie in one plane.
@@ -123,12 +117,57 @@ impl SurfaceSum {
     }
 }
 
-/// Surface of the cells of one level by place, what light can reach and what is hidden.
-type LevelSums = Vec<[SurfaceSum; 2]>;
+/// Surface of a cell, and how much of it is open as far as anybody asked.
+#[derive(Debug, Default)]
+pub(super) struct OpenSum {
+    whole: SurfaceSum,
+    /// Area that was asked about, and what of it is open; in units of [`Layout::area_unit`].
+    asked: AtomicI64,
+    open: AtomicI64,
+}
 
-/// Memory (bytes) per cell that measuring takes.
+impl OpenSum {
+    pub(super) fn add(&self, surface: &CellSurface) {
+        self.whole.add(surface);
+    }
+
+    pub(super) fn add_answer(&self, area: i64, is_open: bool) {
+        self.asked.fetch_add(area, Ordering::Relaxed);
+        if is_open {
+            self.open.fetch_add(area, Ordering::Relaxed);
+        }
+    }
+
+    /// What light can reach, what is hidden, and what is unknown: all, where there is too little to ask about.
+    #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "a share of the area")]
+    fn get(&self) -> [CellSurface; 3] {
+        let (whole, none) = (self.whole.get(), CellSurface::default());
+        let [asked, open] = [&self.asked, &self.open].map(|sum| sum.load(Ordering::Relaxed));
+        if asked == 0 {
+            return [none, none, whole];
+        }
+        let open = whole.part((whole.area as f64 * (open as f64 / asked as f64)).round() as i64);
+        [open, whole.without(&open), none]
+    }
+
+    /// What is not known to be hidden.
+    fn not_hidden(&self) -> CellSurface {
+        let [mut open, _, unknown] = self.get();
+        open.add(&unknown);
+        open
+    }
+
+    /// Hides so much of the area that is not known to be hidden.
+    fn hide(&self, area: i64) {
+        let not_hidden = self.not_hidden().area;
+        self.asked.store(self.whole.get().area, Ordering::Relaxed);
+        self.open.store(not_hidden - area, Ordering::Relaxed);
+    }
+}
+
+/// Memory (bytes) per cell that measuring takes. A level has a quarter of the cells of the next finer one.
 pub(super) const BYTES_PER_CELL: usize =
-    size_of::<[SurfaceSum; 2]>() + size_of::<CellSurface>() + size_of::<bool>();
+    size_of::<OpenSum>() + size_of::<CellSurface>() + size_of::<bool>() + size_of::<[SurfaceSum; 3]>() / 4;
 
 /// Surface of the cells of one level, by place.
 #[derive(Debug)]
@@ -140,7 +179,8 @@ pub(super) struct LevelSurfaces {
     hidden: Vec<bool>,
 }
 
-/// Surface of all cells that light came to, or to a cell of the coarsest level around them; the others have none.
+/// Surface of all cells that light came to, and of the largest around the others that none came to. Cells within those have
+/// none, nor have those of a coarsest cell that light never came to.
 #[derive(Debug)]
 pub(super) struct Surfaces<'a> {
     pub(super) layout: &'a Layout,
@@ -160,26 +200,34 @@ impl<'a> Surfaces<'a> {
         scene: &impl Surroundings,
     ) -> Option<Self> {
         let lit = lit_cells(layout, landed);
-        let empty = |lit: &Vec<bool>| lit.iter().map(|_| Default::default()).collect();
-        let sums: Vec<LevelSums> = lit.iter().map(empty).collect();
-        measure(layout, &lit, scene, &|level, place, [open, hidden]| {
-            let [open_sum, hidden_sum] = &sums[level][place];
-            open_sum.add(&open);
-            hidden_sum.add(&hidden);
-        })?;
+        let mut sums: Vec<Vec<OpenSum>> =
+            lit.iter().map(|lit| lit.iter().map(|_| OpenSum::default()).collect()).collect();
+        measure(layout, &lit, scene, &sums)?;
         for (level, sums) in sums.iter().enumerate() {
             hide_contacts(layout, level, sums);
         }
-        let mut levels = Vec::new();
-        for (level, cells) in sums.iter().enumerate().rev() {
-            let counted = |pair: &[SurfaceSum; 2]| counted(pair.each_ref().map(SurfaceSum::get));
-            let (surfaces, hidden): (Vec<CellSurface>, Vec<bool>) = cells.par_iter().map(counted).unzip();
+        let mut levels: Vec<LevelSurfaces> = Vec::new();
+        // What finer cells add to the cells of a level.
+        let mut finer: Vec<[SurfaceSum; 3]> = Vec::new();
+        while let Some(cells) = sums.pop() {
+            let level = sums.len();
+            let all = |(place, cell): (usize, &OpenSum)| {
+                let mut sums = cell.get();
+                for (sum, finer) in sums.iter_mut().zip(finer.get(place).into_iter().flatten()) {
+                    sum.add(&finer.get());
+                }
+                counted(sums)
+            };
+            let (surfaces, states): (Vec<CellSurface>, Vec<State>) =
+                cells.par_iter().enumerate().map(all).unzip();
+            finer = sums.last().into_iter().flatten().map(|_| Default::default()).collect();
             let places = (0..cells.len()).into_par_iter().filter(|&place| surfaces[place].area > 0);
             places.for_each(|place| {
                 if let Some(parent) = layout.parent(level, place) {
-                    sums[level - 1][parent][usize::from(hidden[place])].add(&surfaces[place]);
+                    finer[parent][states[place] as usize].add(&surfaces[place]);
                 }
             });
+            let hidden = states.into_iter().map(|state| state == State::Hidden).collect();
             levels.push(LevelSurfaces { surfaces, hidden });
         }
         levels.reverse();
@@ -204,7 +252,7 @@ impl<'a> Surfaces<'a> {
     }
 }
 
-/// By level and place: whether light landed in the cell of the coarsest level around it.
+/// By level and place: whether light landed in the cell or a finer one of it.
 fn lit_cells(layout: &Layout, landed: &[Vec<CellSum>]) -> Vec<Vec<bool>> {
     let mut lit: Vec<Vec<bool>> =
         landed.iter().map(|cells| cells.iter().map(|cell| cell.count > 0).collect()).collect();
@@ -216,17 +264,11 @@ fn lit_cells(layout: &Layout, landed: &[Vec<CellSum>]) -> Vec<Vec<bool>> {
             }
         }
     }
-    for level in 1..lit.len() {
-        let (coarser, finer) = lit.split_at_mut(level);
-        finer[0].par_iter_mut().enumerate().for_each(|(place, lit)| {
-            *lit = layout.parent(level, place).map_or(*lit, |parent| coarser[level - 1][parent]);
-        });
-    }
     lit
 }
 
 /// Hides the surface where two flat fronts of a cell lie on each other, such as a box's bottom and the floor.
-fn hide_contacts(layout: &Layout, level: usize, sums: &[[SurfaceSum; 2]]) {
+fn hide_contacts(layout: &Layout, level: usize, sums: &[OpenSum]) {
     let (level_box, cells) = (&layout.grid.levels[level], &layout.levels[level]);
     let contact = |(place, key): (usize, &CellKey)| {
         let (cell, class) = key.cell(level_box);
@@ -234,31 +276,45 @@ fn hide_contacts(layout: &Layout, level: usize, sums: &[[SurfaceSum; 2]]) {
             return None;
         }
         let other = cells.index.find(cell, layout.classes.facing(class))?;
-        let [front, facing] = [place, other].map(|place| sums[place][0].get());
+        let [front, facing] = [place, other].map(|place| sums[place].not_hidden());
         let is_contact = front.touches(&facing, level_box.cell_size);
         is_contact.then(|| ([place, other], front.area.min(facing.area)))
     };
     // A cell has one facing class: no two contacts share a cell.
     cells.keys.par_iter().enumerate().filter_map(contact).for_each(|(places, area)| {
         for place in places {
-            let [open, hidden] = &sums[place];
-            let taken = open.get().part(area);
-            hidden.add(&taken);
-            open.add(&taken.negative());
+            sums[place].hide(area);
         }
     });
 }
 
-/// What counts of a cell's open and hidden surface, and whether it is hidden as a whole, so that all of it does.
-fn counted([open, hidden]: [CellSurface; 2]) -> (CellSurface, bool) {
-    let mut surface = open;
-    let is_hidden = open.area * LEAST_OPEN < hidden.area;
-    if is_hidden {
-        surface.add(&hidden);
-    } else if open.glossy_area * LEAST_OPEN < hidden.glossy_area {
-        surface.glossy_area += hidden.glossy_area;
+/// What is known of a cell's surface as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Open,
+    Hidden,
+    Unknown,
+}
+
+/// What counts of a cell's surface: its open part, or all where hardly any is. What is unknown is taken to be open as far as
+/// the rest of the cell is.
+#[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "a share of the area")]
+fn counted([mut open, mut hidden, unknown]: [CellSurface; 3]) -> (CellSurface, State) {
+    let known = open.area + hidden.area;
+    if known == 0 {
+        return (unknown, State::Unknown);
     }
-    (surface, is_hidden)
+    let share = unknown.part((unknown.area as f64 * (open.area as f64 / known as f64)).round() as i64);
+    open.add(&share);
+    hidden.add(&unknown.without(&share));
+    if open.area * LEAST_OPEN < hidden.area {
+        open.add(&hidden);
+        return (open, State::Hidden);
+    }
+    if open.glossy_area * LEAST_OPEN < hidden.glossy_area {
+        open.glossy_area += hidden.glossy_area;
+    }
+    (open, State::Open)
 }
 
 #[cfg(test)]
@@ -332,7 +388,7 @@ mod tests {
         assert!(finest.iter().any(|s| s.glossy_area == 0));
     }
 
-    /// Both sides of a square: only the one that light came to is measured, all of it, also where no photon landed.
+    /// Both sides of a square: only the one that light came to is measured, all of it, as coarsely as the light tells.
     #[test]
     fn what_light_never_comes_to_is_not_measured() {
         let p = |x: f64, y: f64| DVec3::new(x, y, 0.013) * 0.1;
@@ -361,16 +417,25 @@ mod tests {
                 (0..layout.levels[finest].keys.len()).find(|&place| root(finest, place) == of).unwrap()
             })
             .collect();
-        let landed = landed(&layout, |level, place| level == finest && one_each.contains(&place));
-        let surfaces = Surfaces::measure(&layout, &landed, &scene).unwrap();
+        let lit = landed(&layout, |level, place| level == finest && one_each.contains(&place));
+        let surfaces = Surfaces::measure(&layout, &lit, &scene).unwrap();
         let area = |level: usize, is_front: bool| -> f64 {
             let places = 0..layout.levels[level].keys.len();
             let places = places.filter(|&place| (class(level, place) == front) == is_front);
             places.map(|place| surfaces.area(level, place)).sum()
         };
-        for level in [0, finest] {
-            assert!((area(level, true) / 0.04 - 1.0).abs() < 1e-9, "level {level}");
-            assert_eq!(area(level, false), 0.0, "level {level}");
+        assert!((area(0, true) / 0.04 - 1.0).abs() < 1e-9);
+        assert_eq!(area(0, false), 0.0);
+        // Finer cells are measured next to one that light came to.
+        let whole = Surfaces::measure(&layout, &landed(&layout, |_, _| true), &scene).unwrap();
+        let lit = lit_cells(&layout, &lit);
+        for level in 1..=finest {
+            let places = 0..layout.levels[level].keys.len();
+            for place in places.filter(|&place| class(level, place) == front) {
+                let is_measured = lit[level - 1][layout.parent(level, place).unwrap()];
+                let exact = if is_measured { whole.area(level, place) } else { 0.0 };
+                assert!((surfaces.area(level, place) - exact).abs() < 1e-9 * 0.04, "level {level}");
+            }
         }
     }
 

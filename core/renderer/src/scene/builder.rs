@@ -8,7 +8,8 @@ use glam::{DAffine3, DMat4, DVec3, Vec3};
 use super::equipment::{place_camera, place_lamp};
 use super::mesh::{self, MeshArrays, is_step_count};
 use super::record::{
-    CameraRecord, LampRecord, MaterialRecord, ObjectInfo, WorldProgramRecord, WorldRecord, visibility,
+    CameraRecord, LampRecord, MaterialRecord, ObjectInfo, ObjectLinks, WorldProgramRecord, WorldRecord,
+    visibility,
 };
 use super::{
     Lamp, Material, MaterialProgram, Mesh, Object, Problem, Scene, SceneSpace, World, WorldProgram, motion,
@@ -27,6 +28,7 @@ struct ObjectRecord {
     materials: Vec<u32>,
     visibility: u32,
     info: ObjectInfo,
+    links: ObjectLinks,
 }
 
 impl ObjectRecord {
@@ -120,6 +122,7 @@ impl SceneBuilder {
             materials,
             visibility: visible_to & (visibility::ALL | visibility::HOLDOUT),
             info: ObjectInfo::default(),
+            links: ObjectLinks::default(),
         });
         Ok(self.objects.len() - 1)
     }
@@ -131,6 +134,17 @@ impl SceneBuilder {
     pub fn set_object_info(&mut self, object: usize, info: ObjectInfo) -> Result<(), RenderError> {
         let known = self.objects.get_mut(object).map(|object| object.info = info);
         known.ok_or_else(|| RenderError::Scene(format!("there is no object {object}")))
+    }
+
+    /// Says which lights light an object and are blocked by it, and what it lights itself.
+    ///
+    /// # Errors
+    /// An object or a set that does not exist.
+    pub fn set_object_links(&mut self, object: usize, links: ObjectLinks) -> Result<(), RenderError> {
+        let is_known = links.receiver_set < u32::BITS && links.blocker_set < visibility::BLOCKER_SETS;
+        let record = self.objects.get_mut(object).filter(|_| is_known);
+        let known = record.map(|record| record.links = links);
+        known.ok_or_else(|| RenderError::Scene(format!("there is no object {object}, or no such link set")))
     }
 
     /// Says where an object is at even times while the shutter is open, the middle left out.
@@ -277,6 +291,8 @@ impl SceneBuilder {
                 }
                 (Arc::clone(mesh), Some(transform * *object_from_mesh))
             };
+            let is_blocker = object.visibility & visibility::SHADOW != 0;
+            let blocker = if is_blocker { visibility::blocker(object.links.blocker_set) } else { 0 };
             placed.push(Object {
                 name: object.name,
                 mesh,
@@ -285,7 +301,9 @@ impl SceneBuilder {
                 object_from_scene: transform.inverse(),
                 info: object.info,
                 materials: object.materials,
-                visibility: object.visibility,
+                visibility: object.visibility | blocker,
+                receiver: 1 << object.links.receiver_set,
+                links: object.links.light,
             });
         }
         if need_default {

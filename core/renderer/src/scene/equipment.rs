@@ -137,6 +137,7 @@ pub(super) fn place_lamp(record: LampRecord, space: &SceneSpace, problems: &mut 
         stretch: [scales.x, scales.y].map(|length| (length / scales.z) as f32),
         visibility: record.visibility & visibility::ALL,
         casts_shadow: record.casts_shadow,
+        links: record.links,
     })
 }
 

@@ -8,6 +8,7 @@ mod builder;
 mod equipment;
 mod layer;
 mod lens;
+mod links;
 mod mesh;
 mod motion;
 pub mod record;
@@ -19,6 +20,7 @@ use glam::{DAffine3, DVec3, Vec3};
 pub use builder::SceneBuilder;
 pub use layer::CornerLayer;
 pub use lens::Lens;
+pub use links::{LightLinks, ObjectLinks};
 pub use mesh::MeshArrays;
 pub use motion::{MIDDLE, Shutter};
 pub use record::{LampShape, ObjectInfo, Projection, visibility};
@@ -103,6 +105,10 @@ pub struct Object {
     pub materials: Vec<u32>,
     /// Ray kinds that see it, see [`visibility`].
     pub visibility: u32,
+    /// Bit of its set of receivers.
+    pub receiver: u32,
+    /// What it lights where it emits.
+    pub links: LightLinks,
 }
 
 impl Object {
@@ -195,6 +201,8 @@ pub struct Lamp {
     pub visibility: u32,
     /// False: its light passes through everything.
     pub casts_shadow: bool,
+    /// What it lights.
+    pub links: LightLinks,
 }
 
 /// The camera in scene space.

@@ -8,6 +8,7 @@ use crate::color::Rgb;
 use crate::shader::{Instruction, Register};
 
 pub use super::lens::LensRecord;
+pub use super::links::{LightLinks, ObjectLinks};
 
 /// Ray kinds an object can be hidden from; the bits are Embree's ray mask.
 pub mod visibility {
@@ -27,6 +28,17 @@ pub mod visibility {
     pub const HOLDOUT: u32 = 64;
     /// Everything a mesh object may be seen by.
     pub const ALL: u32 = CAMERA | DIFFUSE | GLOSSY | TRANSMISSION | SHADOW;
+    /// Sets of objects that only some lights are blocked by.
+    pub const BLOCKER_SETS: u32 = 24;
+    /// Shadow rays of lights that are not blocked by everything: a bit for each set. Never set by the host.
+    pub const BLOCKERS: u32 = ((1 << BLOCKER_SETS) - 1) << FIRST_BLOCKER;
+    const FIRST_BLOCKER: u32 = 7;
+
+    /// The bit of a blocker set.
+    #[must_use]
+    pub const fn blocker(set: u32) -> u32 {
+        1 << (FIRST_BLOCKER + set)
+    }
 }
 
 /// One closure of a surface shader: what remains of a node tree once its constants are folded.
@@ -369,6 +381,9 @@ pub struct LampRecord {
     pub visibility: u32,
     /// False: its light passes through everything.
     pub casts_shadow: bool,
+    /// What it lights.
+    #[serde(default)]
+    pub links: LightLinks,
 }
 
 /// How the image plane is projected.

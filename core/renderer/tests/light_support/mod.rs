@@ -7,8 +7,8 @@ use glam::{DAffine3, DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::light::Lights;
 use rgp_renderer::scene::{
-    Camera, Lamp, LampShape, Material, Mesh, Object, ObjectInfo, Projection, Scene, SceneSpace, Shutter,
-    World, visibility,
+    Camera, Lamp, LampShape, LightLinks, Material, Mesh, Object, ObjectInfo, Projection, Scene, SceneSpace,
+    Shutter, World, visibility,
 };
 
 /// A ray kind for look-ups: any one bit.
@@ -27,6 +27,7 @@ pub(crate) fn lamp(shape: LampShape, power: f32, position: Vec3) -> Lamp {
         stretch: [1.0, 1.0],
         visibility: visibility::ALL,
         casts_shadow: true,
+        links: LightLinks::ALL,
     }
 }
 
@@ -58,6 +59,8 @@ pub(crate) fn object(
         info: ObjectInfo::default(),
         materials,
         visibility: visibility::ALL,
+        receiver: 1,
+        links: LightLinks::ALL,
     }
 }
 

@@ -14,7 +14,7 @@ use rgp_renderer::render;
 use rgp_renderer::scene::record::{
     CameraRecord, ClosureRecord, LampRecord, MaterialRecord, WeightedClosure, WorldRecord,
 };
-use rgp_renderer::scene::{LampShape, MeshArrays, Projection, Scene, SceneBuilder, visibility};
+use rgp_renderer::scene::{LampShape, LightLinks, MeshArrays, Projection, Scene, SceneBuilder, visibility};
 use rgp_renderer::settings::{PixelFilter, RenderSettings};
 use rgp_renderer::stats::Stats;
 
@@ -151,6 +151,7 @@ pub(crate) fn lamp(shape: LampShape, power: f32, position: DVec3) -> LampRecord 
         world_from_lamp: rows(DMat4::from_translation(position)),
         visibility: visibility::ALL & !visibility::CAMERA,
         casts_shadow: true,
+        links: LightLinks::ALL,
     }
 }
 

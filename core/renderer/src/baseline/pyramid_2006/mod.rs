@@ -173,7 +173,7 @@ impl Estimator for Pyramid2006 {
         (!footprint.sharp).then_some(Place { p, wo, group: group_of(side.normal) as u8, level })
     }
 
-    fn read(&self, place: &Place) -> Rgb {
+    fn read(&self, place: &Place) -> Option<Rgb> {
         let (level, group) = (u32::from(place.level), usize::from(place.group));
         let bins = self.lattice.bins.about(Frame::new(group_normal(group)).to_local(place.wo));
         let at = (place.p - self.lattice.low) / self.lattice.cell_size(level) - 0.5;
@@ -194,6 +194,6 @@ impl Estimator for Pyramid2006 {
             sum += radiance * weight;
             weights += weight;
         }
-        if weights > 0.0 { sum * (1.0 / weights) } else { Rgb::BLACK }
+        Some(if weights > 0.0 { sum * (1.0 / weights) } else { Rgb::BLACK })
     }
 }
