@@ -10,7 +10,7 @@ HOST := $(shell for p in python3 python3.13 python3.11; do $$p -c '' 2>/dev/null
 TOOLS = $(if $(HOST),$(HOST),$(error Python 3.11 or 3.13 is needed, and none runs here)) -m tools
 
 .DEFAULT_GOAL := help
-.PHONY: help render test hard fuzz lint bench tables agreement extension lock clean
+.PHONY: help render test hard fuzz lint bench tables agreement scenes extension lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -38,6 +38,9 @@ tables: ## the paper's tables with our figures, into docs/results: make tables [
 
 agreement: ## every feature against Cycles, into docs/agreement.md: make agreement [ARGS="lamp/ path/"] (prints only those)
 	@$(TOOLS) agreement --bpy "$(BPY)" $(ARGS)
+
+scenes: ## files that others made against Cycles, into docs/real-scenes.md (they lie in ../shared/scenes; not part of this)
+	@$(TOOLS) scenes --bpy "$(BPY)" $(ARGS)
 
 extension: ## dist/*.zip for Blender: make extension [PYTHON=3.13]
 	@$(TOOLS) extension --bpy "$(BPY)" --python "$(PYTHON)"

@@ -1,6 +1,6 @@
 """The commands behind the Makefile: `python3 -m tools COMMAND`.
 
-COMMAND is render, test, hard, fuzz, lint, bench, tables, agreement, extension or clean.
+COMMAND is render, test, hard, fuzz, lint, bench, tables, agreement, scenes, extension or clean.
 """
 
 from __future__ import annotations
@@ -126,6 +126,12 @@ def agreement(options: argparse.Namespace) -> None:
     require([python, "-m", "tests.render.agreement", *options.more])
 
 
+def scenes(options: argparse.Namespace) -> None:
+    """Compares scenes that others made with Cycles and writes `docs/real-scenes.md`."""
+    python = make_blender(available_bpys(options.bpy)[-1])
+    require([python, "-m", "benchmarks.real_scenes", *options.more])
+
+
 def extension(options: argparse.Namespace) -> None:
     """Builds the Blender extension with the wheels for one Python inside."""
     bpy = available_bpys(options.bpy)[-1]
@@ -143,7 +149,7 @@ def main() -> None:
     """Reads the command line and runs one command."""
     parser = argparse.ArgumentParser(prog="python3 -m tools", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
-    for command in (render, test, hard, fuzz, lint, bench, tables, agreement, extension, clean):
+    for command in (render, test, hard, fuzz, lint, bench, tables, agreement, scenes, extension, clean):
         subparser = commands.add_parser(command.__name__, help=command.__doc__)
         subparser.set_defaults(run=command)
         subparser.add_argument(

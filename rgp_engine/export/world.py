@@ -20,7 +20,7 @@ class WorldCompiler(Compiler):
 def world_record(context: ExportContext) -> dict[str, Any]:
     """Light from outside."""
     b_scene = context.b_depsgraph.scene_eval
-    b_world = b_scene.world
+    b_world = _world(b_scene, context.b_depsgraph.view_layer_eval)
     radiance, program = (BLACK, None) if b_world is None else world_radiance(context, b_world)
     context.emits |= any(radiance) or program is not None
     return {
@@ -30,6 +30,14 @@ def world_record(context: ExportContext) -> dict[str, Any]:
         "visibility": world_bits(b_world),
         "film_transparent": b_scene.render.film_transparent,
     }
+
+
+def _world(b_scene: Any, b_view_layer: Any) -> Any:
+    """The world of a view layer, which may have another than the scene, or none."""
+    if not b_view_layer.use_sky:
+        return None
+    # Blender 4.3 and later.
+    return getattr(b_view_layer, "world_override", None) or b_scene.world
 
 
 def world_radiance(context: ExportContext, b_world: Any) -> tuple[Color, dict[str, Any] | None]:

@@ -12,6 +12,10 @@ has_exposure = pytest.mark.skipif(
     "exposure" not in bpy.types.Light.bl_rna.properties, reason="Blender 4.5 and later"
 )
 
+has_world_override = pytest.mark.skipif(
+    "world_override" not in bpy.types.ViewLayer.bl_rna.properties, reason="Blender 4.3 and later"
+)
+
 
 @pytest.fixture
 def lamp(export):
@@ -156,6 +160,31 @@ def test_world_color_times_strength(scene, export):
     assert world["radiance"] == pytest.approx([1.5, 0.75, 3.0])
     assert world["film_transparent"] is True
     assert world["visibility"] == 31
+
+
+def test_view_layer_without_environment(scene, export):
+    build.add_camera()
+    b_tree, b_output = world_of(scene)
+    b_background = build.node(b_tree, "ShaderNodeBackground", Color=(1.0, 1.0, 1.0), Strength=1.0)
+    build.connect(b_tree, b_background, b_output, "Surface")
+    scene.view_layers[0].use_sky = False
+    assert export().world["radiance"] == [0.0] * 3
+
+
+@has_world_override
+def test_view_layer_with_another_world(scene, export):
+    build.add_camera()
+    world_of(scene)
+    b_other = bpy.data.worlds.new("Other")
+    b_tree = build.shader_tree(b_other)
+    b_background = build.node(b_tree, "ShaderNodeBackground", Color=(1.0, 0.5, 0.5), Strength=2.0)
+    b_output = b_tree.nodes.new("ShaderNodeOutputWorld")
+    build.connect(b_tree, b_background, b_output, "Surface")
+    b_output.is_active_output = True
+    scene.view_layers[0].world_override = b_other
+    world = export().world
+    assert world["name"] == "Other"
+    assert world["radiance"] == pytest.approx([2.0, 1.0, 1.0])
 
 
 def test_mixed_backgrounds(scene, export):

@@ -327,6 +327,12 @@ impl PreparedMaterial {
         self.closures.is_empty()
     }
 
+    /// True when something of it is as bright from everywhere. Its normal stays as it is, for all of its lobes.
+    fn is_in_part_diffuse(&self) -> bool {
+        let is_diffuse = |closure: &PreparedClosure| closure.classes().intersects(LobeSet::LAMBERT);
+        !self.lambert.is_black() || self.closures.iter().any(|(_, closure)| is_diffuse(closure))
+    }
+
     /// See [`Bsdf::specular_tint`].
     #[must_use]
     pub fn specular_tint(&self) -> Rgb {
@@ -352,7 +358,10 @@ impl<'a> MaterialRef<'a> {
     #[inline]
     pub(super) fn bsdf(self, wo: Vec3, ng: Vec3, ns: Vec3) -> Bsdf<'a> {
         let material: &PreparedMaterial = &self;
-        let frame = ShadingFrame::new(wo, ng, ns);
+        let mut frame = ShadingFrame::new(wo, ng, ns);
+        if !material.is_plain() && !material.is_in_part_diffuse() {
+            frame = frame.mirroring_above(wo);
+        }
         let cos = wo.dot(frame.ns).clamp(0.0, 1.0);
         let (mut emission, transparency) = (material.bare_emission, material.straight);
         let mut lobes = SmallVec::new();

@@ -65,6 +65,8 @@ impl LobeSet {
     pub const DELTA: Self = Self(8);
     /// Lambert transmission: what arrives on one side leaves the other.
     pub const TRANSLUCENT: Self = Self(16);
+    /// Lambert's, on either side, and sheen.
+    pub const LAMBERT: Self = Self(17);
     /// Every class with a finite density.
     pub const NON_DELTA: Self = Self(23);
     /// Classes whose light can be read where a gather ray ends.
@@ -144,6 +146,22 @@ impl ShadingFrame {
             ns = (ns + wo * (least - cos)).normalize();
         }
         Self { ns, ng, entering }
+    }
+
+    /// The frame with a shading normal that mirrors `wo` to above the surface: half-way to the mirrored direction, which is
+    /// lifted along the geometric normal (Keller et al. 2017, *The Iray Light Transport Simulation and Rendering System*,
+    /// appendix A.3). Without it, smooth mirrors and glass are black where they are seen at a slant.
+    #[must_use]
+    fn mirroring_above(self, wo: Vec3) -> Self {
+        const LEAST: f32 = 0.01;
+        let mirrored = 2.0 * wo.dot(self.ns) * self.ns - wo;
+        let least = LEAST.min(0.9 * wo.dot(self.ng));
+        let cos = mirrored.dot(self.ng);
+        if cos >= least {
+            return self;
+        }
+        let lifted = (mirrored + (least - cos) * self.ng).normalize_or(self.ng);
+        Self { ns: (wo + lifted).normalize_or(self.ng), ..self }
     }
 
     /// Flux of a photon from `wo` times this is what to store for an irradiance that belongs to the shading normal, as
