@@ -78,19 +78,21 @@ impl Estimator for PyramidLookup<'_> {
         let side = bsdf.frame.side();
         let class = self.pyramid.class(side);
         let mut radiance = Rgb::BLACK;
+        // Asked for whatever is read, so that the same rays are followed whichever effects are on.
+        let irradiance = self.pyramid.irradiance(surface.p, class, level)?;
         if bsdf.has(lobes.and(LobeSet::DIFFUSE)) {
-            let irradiance = self.pyramid.irradiance(surface.p, class, level)?;
             radiance += bsdf.diffuse_albedo() * irradiance * std::f32::consts::FRAC_1_PI;
         }
-        if bsdf.has(lobes.and(LobeSet::TRANSLUCENT)) {
+        if bsdf.has(LobeSet::TRANSLUCENT) {
             let irradiance = self.pyramid.irradiance(surface.p, self.pyramid.class(side.other()), level)?;
-            radiance += bsdf.albedo(LobeSet::TRANSLUCENT) * irradiance * std::f32::consts::FRAC_1_PI;
+            radiance +=
+                bsdf.albedo(lobes.and(LobeSet::TRANSLUCENT)) * irradiance * std::f32::consts::FRAC_1_PI;
         }
         if bsdf.has(LobeSet::ROUGH) {
             let tint = bsdf.specular_tint() * bsdf.rough_gain();
             let shift = [rng.draw() - 0.5, rng.draw() - 0.5];
             if lobes.intersects(LobeSet::ROUGH) {
-                radiance += tint * self.pyramid.glossy_radiance(surface.p, class, level, bsdf.wo(), shift)?;
+                radiance += tint * self.pyramid.glossy_radiance(surface.p, class, level, bsdf.wo(), shift);
             }
         }
         Some(radiance)

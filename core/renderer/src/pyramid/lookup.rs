@@ -85,7 +85,7 @@ impl<'a> View<'a> {
     }
 
     /// Radiance (W·m⁻²·sr⁻¹) of the glossy surfaces of class `class` at `p` towards the unit vector `direction`, divided by
-    /// their tint; `shift` in [-½, ½]² as in [`super::DirectionBins::bin`]. `None` where the cell is mixed.
+    /// their tint; `shift` in [-½, ½]² as in [`super::DirectionBins::bin`].
     #[must_use]
     pub fn glossy_radiance(
         &self,
@@ -94,13 +94,9 @@ impl<'a> View<'a> {
         level: usize,
         direction: Vec3,
         shift: [f32; 2],
-    ) -> Option<Rgb> {
-        let cell = self.find(p, class, level);
-        if cell.is_some_and(Cell::is_mixed) {
-            return None;
-        }
-        let radiance = |number| self.pyramid.store.radiance(number, self.set, direction, shift);
-        Some(cell.and_then(Cell::glossy).map_or(Rgb::BLACK, radiance))
+    ) -> Rgb {
+        let glossy = self.find(p, class, level).and_then(Cell::glossy);
+        glossy.map_or(Rgb::BLACK, |number| self.pyramid.store.radiance(number, self.set, direction, shift))
     }
 
     /// The cell to read; `None` where it is dark.
