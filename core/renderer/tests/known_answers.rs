@@ -202,18 +202,41 @@ fn one_bounce_off_a_floor() {
     assert_close(mean(&pixels), 0.8 / PI * 0.385_608_62, 0.01);
 }
 
+/// Irradiance on the floor beside a glowing panel just above it, from where it is seen at a few degrees: a difference of two
+/// parallel rectangles with a corner above the point, on both sides. Rays to the panel must not end in it.
+#[test]
+fn glowing_panel_just_above_a_floor() {
+    let radiance = 100.0;
+    for height in [0.1_f32, 0.02] {
+        let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
+        let factor = |a: f64| parallel_rectangle(a / f64::from(height), 0.5 / f64::from(height));
+        let irradiance = PI * radiance * 2.0 * (factor(1.5) - factor(0.5));
+        let mut builder = SceneBuilder::default();
+        let panel = quad(corners.map(|(x, y)| Vec3::new(x, y, height)));
+        place(&mut builder, panel, &[emitter(0.0, radiance as f32)]);
+        place(&mut builder, floor(20.0, 0.0), &[diffuse(0.5)]);
+        let seen = DVec3::new(1.0, 0.0, 0.0);
+        builder.set_camera(parallel_camera(seen + DVec3::Z, seen, 0.001, 64));
+        let mut settings = settings(0, RESOLUTION, 16);
+        settings.gather.camera_samples = 64;
+        let found = mean(&finish_and_render(builder, &settings).radiance()) * PI / 0.5;
+        assert!((found / irradiance - 1.0).abs() < 0.02, "{height}: {found} is not {irradiance}");
+    }
+}
+
+/// Form factor of a rectangle of sides a and b as seen from an element under its corner, parallel to it and one below.
+fn parallel_rectangle(a: f64, b: f64) -> f64 {
+    let (u, v) = ((1.0 + a * a).sqrt(), (1.0 + b * b).sqrt());
+    (a / u * (b / u).atan() + b / v * (a / v).atan()) / (2.0 * PI)
+}
+
 /// Irradiance on the floor straight below a lamp, as the picture shows it: L = ρ E / π.
 #[test]
 fn direct_light_of_each_lamp() {
     let (power, height, spread) = (10.0, 2.0_f64, std::f32::consts::PI);
     let intensity = power / (4.0 * PI);
-    // Element under the corner of a parallel rectangle of sides a, b (over the height).
-    let corner = |a: f64, b: f64| {
-        let (u, v) = ((1.0 + a * a).sqrt(), (1.0 + b * b).sqrt());
-        (a / u * (b / u).atan() + b / v * (a / v).atan()) / (2.0 * PI)
-    };
     let square_distance = height * height;
-    let rectangle = 4.0 * corner(0.5 / height, 0.25 / height) * power / 0.5;
+    let rectangle = 4.0 * parallel_rectangle(0.5 / height, 0.25 / height) * power / 0.5;
     let disk = 0.25 / (0.25 + square_distance) * power / (PI * 0.25);
     let (radius, soft_falloff) = (0.3, false);
     let lamps = [

@@ -80,7 +80,7 @@ pub(super) fn shadow_ray(
     let cos = sample.wi.dot(bsdf.frame.ns).abs();
     let radiance = f * sample.radiance_over_pdf * (cos * weight);
     let ray = surface.leaving(sample.wi, sample.blockers);
-    Some(ShadowRay { ray, t_far: reach(sample.distance), radiance })
+    Some(ShadowRay { ray, t_far: reach(sample), radiance })
 }
 
 /// As [`shadow_ray`], for a camera sample on a constant Lambert surface; the radiance is what the camera sees.
@@ -103,12 +103,14 @@ pub(super) fn lambert_shadow_ray(
     };
     let radiance = lanes.weight[lane] * sample.radiance_over_pdf * (pdf * weight);
     let ray = Ray::leaving(lanes.p[lane], lanes.ng[lane], sample.wi, sample.blockers, lanes.time[lane]);
-    Some(ShadowRay { ray, t_far: reach(sample.distance), radiance })
+    Some(ShadowRay { ray, t_far: reach(sample), radiance })
 }
 
-/// A shadow ray ends before the light's own surface.
-fn reach(distance: f32) -> f32 {
-    (distance * (1.0 - 1e-5) - 4.0 * OFFSET).max(0.0)
+/// A shadow ray ends before the light's own surface, as far above it however flat it comes in: it starts beside the point
+/// from which the light was sampled, and would else end in the surface.
+fn reach(sample: &DirectSample) -> f32 {
+    let cos = sample.point.map_or(1.0, |point| point.cos);
+    (sample.distance * (1.0 - 1e-5) - 4.0 * OFFSET / cos).max(0.0)
 }
 
 /// Share of light that reaches the end of a shadow ray through transparent surfaces.

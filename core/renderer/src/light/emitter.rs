@@ -24,6 +24,8 @@ pub struct EmitterPoint {
     pub barycentric: [f32; 2],
     /// What one unit of radiance counts there: of a photon's flux, or over the pdf of direct light.
     pub per_radiance: f32,
+    /// Cosine between the triangle's normal and the direction of the light, whichever side it leaves.
+    pub cos: f32,
 }
 
 impl EmitterPoint {
@@ -141,7 +143,7 @@ impl MeshEmitter {
             radiance_over_pdf: triangle.radiance / pdf,
             pdf,
             is_delta: false,
-            point: Some(self.point(which, barycentric, 1.0 / pdf)),
+            point: Some(self.point(which, barycentric, 1.0 / pdf, triangle.normal.dot(wi))),
         })
     }
 
@@ -153,18 +155,20 @@ impl MeshEmitter {
         let per_radiance = (f64::from(TAU) * self.weight / f64::from(triangle.radiance.mean())) as f32;
         let side = 2.0 * direction[0];
         let normal = if side < 1.0 { triangle.normal } else { -triangle.normal };
+        let direction = warp::cosine(normal, [side.fract(), direction[1]]);
         Photon {
             origin: triangle.point(barycentric).as_vec3(),
-            direction: warp::cosine(normal, [side.fract(), direction[1]]),
+            direction,
             flux: triangle.radiance * per_radiance,
             normal: Some(normal),
             lit_from: 0.0,
-            point: Some(self.point(which, barycentric, per_radiance)),
+            point: Some(self.point(which, barycentric, per_radiance, normal.dot(direction))),
         }
     }
 
-    fn point(&self, which: usize, barycentric: [f32; 2], per_radiance: f32) -> EmitterPoint {
-        EmitterPoint { object: self.object, primitive: self.triangles[which], barycentric, per_radiance }
+    fn point(&self, which: usize, barycentric: [f32; 2], per_radiance: f32, cos: f32) -> EmitterPoint {
+        let primitive = self.triangles[which];
+        EmitterPoint { object: self.object, primitive, barycentric, per_radiance, cos: cos.abs() }
     }
 
     fn radiance(&self, primitive: usize) -> Rgb {

@@ -130,7 +130,11 @@ impl<'a> LitScene<'a> {
             distance,
             radiance_over_pdf: sample.radiance_over_pdf * factor,
             pdf_solid_angle: pdf,
-            point: Some(EmitterPoint { per_radiance: point.per_radiance * factor, ..point }),
+            point: Some(EmitterPoint {
+                per_radiance: point.per_radiance * factor,
+                cos: triangle.normal.as_vec3().dot(wi).abs(),
+                ..point
+            }),
             ..sample
         })
     }
