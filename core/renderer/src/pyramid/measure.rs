@@ -7,6 +7,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::clip::{Part, clip_triangle, to_the_finest};
+use super::divided::is_divided;
 use super::grid::Grid;
 use super::index::CellKey;
 use super::layout::Layout;
@@ -184,10 +185,18 @@ impl<S: Surroundings> Pending<'_, S> {
                 };
                 let surface = self.surface(&part, side, triangle.glossy);
                 self.sums[of][place].add(&surface);
-                let in_several = of < level
-                    || layout.grid.is_divided(level, layout.grid.levels[level].lattice(cell))
-                    || !*is_alone.get_or_insert_with(|| layout.levels[level].index.is_alone(cell));
-                self.add_points((of, place), &part, surface.area, side, in_several);
+                let box_of = &layout.grid.levels[level];
+                let in_company = of == level
+                    && (layout.grid.is_divided(level, box_of.lattice(cell))
+                        || !*is_alone.get_or_insert_with(|| layout.levels[level].index.is_alone(cell)));
+                self.add_points((of, place), &part, surface.area, side, of < level || in_company);
+                let is_large = part.area >= SMALL_PART * f64::from(box_of.cell_size).powi(2);
+                if in_company
+                    && is_large
+                    && is_divided(&part, side, box_of.cell_size, &layout.grid, self.scene)
+                {
+                    self.sums[of][place].divide();
+                }
             }
             if self.points.len() >= TOGETHER {
                 self.ask();

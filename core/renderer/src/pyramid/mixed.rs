@@ -1,8 +1,8 @@
-//! Mixed cells: coarse cells that hold surfaces which do not see each other, such as the floor on both sides of a wall.
+//! Mixed cells: those that hold surfaces which do not see each other, such as the floor on both sides of a wall.
 //!
-//! Their mean is the light of neither. They are found by short visibility rays between the parts of a cell, and read from
-//! finer cells instead: no light leaks through walls thicker than a finest cell, and what is hidden (the floor under a
-//! box) does not darken what is not.
+//! Their mean is the light of neither. They are found by short visibility rays between the parts of a cell, or along the
+//! rim of a part, and read from finer cells instead or not at all: no light leaks through walls, however thin, and what
+//! is hidden (the floor under a box) does not darken what is not.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -15,7 +15,7 @@ use super::layout::Layout;
 use super::surfaces::Surfaces;
 
 /// Visibility rays start this far above the surface (cells): above its own curvature, below what stands on it.
-const LIFT: f32 = 0.25;
+pub(super) const LIFT: f32 = 0.25;
 
 /// By level, by place: whether the cell is mixed. Only cells that hold light are asked about.
 pub(super) fn mixed_cells(
@@ -28,7 +28,7 @@ pub(super) fn mixed_cells(
     let own = |level: usize, place: usize| surfaces.levels[level].surfaces[place].centroid();
     let mut points: Vec<Vec3> =
         (0..layout.levels[finest].keys.len()).map(|place| own(finest, place)).collect();
-    let mut mixed: Vec<Vec<bool>> = layout.levels.iter().map(|level| vec![false; level.keys.len()]).collect();
+    let mut mixed: Vec<Vec<bool>> = surfaces.levels.iter().map(|level| level.divided.clone()).collect();
     for level in (1..=finest).rev() {
         let (cells, surfaces) = (0..layout.levels[level].keys.len(), &surfaces.levels[level].surfaces);
         // A cell is represented by the largest of its parts, so that its point lies on a surface.
@@ -46,7 +46,8 @@ pub(super) fn mixed_cells(
         let lift = LIFT * layout.grid.levels[level].cell_size;
         let lifted =
             |place: usize| layout.grid.position(points[place] + surfaces[place].mean_normal() * lift);
-        let flags: Vec<AtomicBool> = largest.iter().map(|_| AtomicBool::new(false)).collect();
+        let flags: Vec<AtomicBool> =
+            mixed[level - 1].iter().map(|&divided| AtomicBool::new(divided)).collect();
         cells.into_par_iter().for_each(|place| {
             let Some(parent) = layout.parent(level, place) else { return };
             if sums[level - 1][parent].count == 0

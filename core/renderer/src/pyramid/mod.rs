@@ -22,6 +22,7 @@ mod build;
 mod cell_id;
 mod class;
 mod clip;
+mod divided;
 mod grid;
 mod index;
 mod layout;

@@ -1,7 +1,7 @@
 //! How much surface of each cell counts: what flux is divided by. Measured after the photons have landed: where none did,
 //! and that is the inside of every solid, nothing has to be known.
 
-use std::sync::atomic::{AtomicI64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -124,11 +124,17 @@ pub(super) struct OpenSum {
     /// Area that was asked about, and what of it is open; in units of [`Layout::area_unit`].
     asked: AtomicI64,
     open: AtomicI64,
+    /// Something divides a part of it.
+    divided: AtomicBool,
 }
 
 impl OpenSum {
     pub(super) fn add(&self, surface: &CellSurface) {
         self.whole.add(surface);
+    }
+
+    pub(super) fn divide(&self) {
+        self.divided.store(true, Ordering::Relaxed);
     }
 
     pub(super) fn add_answer(&self, area: i64, is_open: bool) {
@@ -177,6 +183,8 @@ pub(super) struct LevelSurfaces {
     /// Whether light cannot come to the cell's surface, or hardly: it counts for itself, and not for a coarser cell that
     /// holds open surface too.
     hidden: Vec<bool>,
+    /// Whether something divides a part of the cell's own surface, so that light on one side of it is not that on the other.
+    pub(super) divided: Vec<bool>,
 }
 
 /// Surface of all cells that light came to, and of the largest around the others that none came to. Cells within those have
@@ -228,7 +236,8 @@ impl<'a> Surfaces<'a> {
                 }
             });
             let hidden = states.into_iter().map(|state| state == State::Hidden).collect();
-            levels.push(LevelSurfaces { surfaces, hidden });
+            let divided = cells.into_iter().map(|cell| cell.divided.into_inner()).collect();
+            levels.push(LevelSurfaces { surfaces, hidden, divided });
         }
         levels.reverse();
         Some(Self { layout, levels })
