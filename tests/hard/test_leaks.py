@@ -25,11 +25,23 @@ def turned(axis: tuple[float, float, float], angle: float) -> Array:
     return matrix
 
 
-def rooms(thickness: float, turn: Array, side: float) -> Scene:
+def subdivided(shape: tuple[Array, Array], times: int) -> tuple[Array, Array]:
+    """Every triangle cut into four, so many times."""
+    faces = shape[0][shape[1]]
+    for _ in range(times):
+        a, b, c = faces[:, 0], faces[:, 1], faces[:, 2]
+        ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
+        parts = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+        faces = np.concatenate([np.stack(part, axis=1) for part in parts])
+    return faces.reshape(-1, 3), np.arange(3 * len(faces), dtype=np.uint32).reshape(-1, 3)
+
+
+def rooms(thickness: float, turn: Array, side: float, subdivisions: int = 0) -> Scene:
     """Two rooms of one meter with a wall between, the right one lit; the camera is on one side of x = 0."""
     scene = Scene()
     half = 0.5 * thickness
-    scene.add(cuboid((-1.0 - half, 0.0, 0.0), (1.0 + half, 1.0, 1.0)), diffuse(0.7), turn)
+    walls = cuboid((-1.0 - half, 0.0, 0.0), (1.0 + half, 1.0, 1.0))
+    scene.add(subdivided(walls, subdivisions), diffuse(0.7), turn)
     scene.add(cuboid((-half, 0.0, 0.0), (half, 1.0, 1.0)), diffuse(0.7), turn)
     scene.lamp(10.0, turn @ moved(0.4, 0.5, 0.6))
     eye, target = (
@@ -59,6 +71,21 @@ def test_two_rooms(check: Check, edge: Callable[..., None], cells: float, turn: 
     check(case, expected=0.0, got=leak(cells), bound=LEAK)
     if cells == 1.0:
         edge(case, [1.0, 0.5, 0.2, 0.1, 0.05, 0.02], leak, unit=" cells")
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_thin_wall_on_small_triangles(check: Check, edge: Callable[..., None], turn: str) -> None:
+    """As above; each cell holds dozens of the triangles that the walls of the rooms are made of."""
+    values = settings(photon_pass__photon_count=200_000, pyramid__finest_resolution=RESOLUTION)
+
+    def leak(cells: float) -> float:
+        sides = (rooms(cells * CELL, TURNS[turn], side, 7).render(values) for side in (-1.0, 1.0))
+        dark, lit = (picture.mean for picture in sides)
+        return dark / lit
+
+    case = f"wall of 0.2 cells on small triangles, {turn}"
+    check(case, expected=0.0, got=leak(0.2), bound=LEAK)
+    edge(case, [0.5, 0.2, 0.1, 0.05], leak, unit=" cells")
 
 
 @pytest.mark.parametrize("cells", [0.2, 1.0])

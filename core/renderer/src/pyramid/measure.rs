@@ -7,7 +7,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::clip::{Part, clip_triangle, to_the_finest};
-use super::divided::is_divided;
+use super::divided::is_part_divided;
 use super::grid::Grid;
 use super::index::CellKey;
 use super::layout::Layout;
@@ -154,6 +154,8 @@ struct Asked {
     place: usize,
     /// In units.
     area: i64,
+    /// Whether other surfaces share its cell.
+    in_company: bool,
 }
 
 /// What a batch of triangles adds.
@@ -189,11 +191,12 @@ impl<S: Surroundings> Pending<'_, S> {
                 let in_company = of == level
                     && (layout.grid.is_divided(level, box_of.lattice(cell))
                         || !*is_alone.get_or_insert_with(|| layout.levels[level].index.is_alone(cell)));
-                self.add_points((of, place), &part, surface.area, side, of < level || in_company);
+                let several = of < level || in_company;
+                self.add_points((of, place), &part, surface.area, side, several, in_company);
                 let is_large = part.area >= SMALL_PART * f64::from(box_of.cell_size).powi(2);
                 if in_company
                     && is_large
-                    && is_divided(&part, side, box_of.cell_size, &layout.grid, self.scene)
+                    && is_part_divided(&part, side, box_of.cell_size, &layout.grid, self.scene)
                 {
                     self.sums[of][place].divide();
                 }
@@ -237,6 +240,7 @@ impl<S: Surroundings> Pending<'_, S> {
         area: i64,
         side: Side,
         several: bool,
+        in_company: bool,
     ) {
         let layout = self.layout;
         let (grid, batches) = (&layout.grid, &layout.batches);
@@ -245,7 +249,7 @@ impl<S: Surroundings> Pending<'_, S> {
             let finest = grid.locate(offset, grid.base()).map_or(0, |(level, _)| level);
             let cell_size = grid.levels[finest].cell_size;
             self.points.push(SidePoint { p: grid.position(offset), side, cell_size });
-            self.asked.push(Asked { level, place, area });
+            self.asked.push(Asked { level, place, area, in_company });
         };
         let face = f64::from(grid.levels[level].cell_size).powi(2);
         let point = POINT * face;
@@ -270,9 +274,16 @@ impl<S: Surroundings> Pending<'_, S> {
     /// Asks about the points that wait.
     fn ask(&mut self) {
         let open = self.scene.open(&self.points);
-        self.points.clear();
-        for (Asked { level, place, area }, open) in self.asked.drain(..).zip(open) {
+        let grid = &self.layout.grid;
+        for ((asked, point), open) in self.asked.drain(..).zip(self.points.drain(..)).zip(open) {
+            let Asked { level, place, area, in_company } = asked;
             self.sums[level][place].add_answer(area, open);
+            if open && in_company {
+                let level_box = &grid.levels[level];
+                let cell = level_box.lattice(self.layout.levels[level].keys[place].cell(level_box).0);
+                let inside = grid.offset(point.p) / level_box.cell_size - cell.as_vec3();
+                self.sums[level][place].add_open_point(inside, point.side.normal);
+            }
         }
     }
 }

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::Surroundings;
 use super::accumulator::CellSum;
 use super::class::BACKS;
+use super::divided::Rim;
 use super::index::CellKey;
 use super::layout::Layout;
 use super::measure::measure;
@@ -126,6 +127,7 @@ pub(super) struct OpenSum {
     open: AtomicI64,
     /// Something divides a part of it.
     divided: AtomicBool,
+    rim: Rim,
 }
 
 impl OpenSum {
@@ -135,6 +137,11 @@ impl OpenSum {
 
     pub(super) fn divide(&self) {
         self.divided.store(true, Ordering::Relaxed);
+    }
+
+    /// Takes note of an open point, see [`Rim::add`].
+    pub(super) fn add_open_point(&self, inside: Vec3, normal: Vec3) {
+        self.rim.add(inside, normal);
     }
 
     pub(super) fn add_answer(&self, area: i64, is_open: bool) {
@@ -212,6 +219,9 @@ impl<'a> Surfaces<'a> {
             lit.iter().map(|lit| lit.iter().map(|_| OpenSum::default()).collect()).collect();
         measure(layout, &lit, scene, &sums)?;
         for (level, sums) in sums.iter().enumerate() {
+            divide(layout, level, sums, scene);
+        }
+        for (level, sums) in sums.iter().enumerate() {
             hide_contacts(layout, level, sums);
         }
         let mut levels: Vec<LevelSurfaces> = Vec::new();
@@ -274,6 +284,19 @@ fn lit_cells(layout: &Layout, landed: &[Vec<CellSum>]) -> Vec<Vec<bool>> {
         }
     }
     lit
+}
+
+/// Notes which cells of a level something divides, as their rims tell.
+fn divide(layout: &Layout, level: usize, sums: &[OpenSum], scene: &impl Surroundings) {
+    let (level_box, keys) = (&layout.grid.levels[level], &layout.levels[level].keys);
+    keys.par_iter().zip(sums).filter(|(_, sum)| !sum.divided.load(Ordering::Relaxed)).for_each(
+        |(key, sum)| {
+            let normal = || sum.whole.get().mean_normal();
+            if sum.rim.has_points() && sum.rim.is_divided(*key, level_box, normal(), &layout.grid, scene) {
+                sum.divide();
+            }
+        },
+    );
 }
 
 /// Hides the surface where two flat fronts of a cell lie on each other, such as a box's bottom and the floor.
