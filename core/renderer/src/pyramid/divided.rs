@@ -7,11 +7,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use arrayvec::ArrayVec;
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 use super::clip::Part;
 use super::grid::{Grid, LevelBox};
 use super::index::CellKey;
+use super::layout::Layout;
 use super::mixed::LIFT;
+use super::surfaces::OpenSum;
 use super::{SidePoint, Surroundings};
 use crate::math::Side;
 
@@ -44,6 +47,17 @@ pub(super) fn is_part_divided(
         }
     }
     groups > 1
+}
+
+/// Notes which cells of a level something divides, as their rims tell.
+pub(super) fn find_divided(layout: &Layout, level: usize, sums: &[OpenSum], scene: &impl Surroundings) {
+    let level_box = &layout.grid.levels[level];
+    layout.levels[level].keys.par_iter().zip(sums).for_each(|(key, sum)| {
+        let (rim, normal) = sum.rim();
+        if rim.has_points() && rim.is_divided(*key, level_box, normal, &layout.grid, scene) {
+            sum.divide();
+        }
+    });
 }
 
 /// For each point, whether it does not see the next one, the last one the first, when both are lifted.

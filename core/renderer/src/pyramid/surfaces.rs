@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::Surroundings;
 use super::accumulator::CellSum;
 use super::class::BACKS;
-use super::divided::Rim;
+use super::divided::{Rim, find_divided};
 use super::index::CellKey;
 use super::layout::Layout;
 use super::measure::measure;
@@ -139,6 +139,11 @@ impl OpenSum {
         self.divided.store(true, Ordering::Relaxed);
     }
 
+    /// Its open points, and its mean normal.
+    pub(super) fn rim(&self) -> (&Rim, Vec3) {
+        (&self.rim, self.whole.get().mean_normal())
+    }
+
     /// Takes note of an open point, see [`Rim::add`].
     pub(super) fn add_open_point(&self, inside: Vec3, normal: Vec3) {
         self.rim.add(inside, normal);
@@ -219,7 +224,7 @@ impl<'a> Surfaces<'a> {
             lit.iter().map(|lit| lit.iter().map(|_| OpenSum::default()).collect()).collect();
         measure(layout, &lit, scene, &sums)?;
         for (level, sums) in sums.iter().enumerate() {
-            divide(layout, level, sums, scene);
+            find_divided(layout, level, sums, scene);
         }
         for (level, sums) in sums.iter().enumerate() {
             hide_contacts(layout, level, sums);
@@ -284,19 +289,6 @@ fn lit_cells(layout: &Layout, landed: &[Vec<CellSum>]) -> Vec<Vec<bool>> {
         }
     }
     lit
-}
-
-/// Notes which cells of a level something divides, as their rims tell.
-fn divide(layout: &Layout, level: usize, sums: &[OpenSum], scene: &impl Surroundings) {
-    let (level_box, keys) = (&layout.grid.levels[level], &layout.levels[level].keys);
-    keys.par_iter().zip(sums).filter(|(_, sum)| !sum.divided.load(Ordering::Relaxed)).for_each(
-        |(key, sum)| {
-            let normal = || sum.whole.get().mean_normal();
-            if sum.rim.has_points() && sum.rim.is_divided(*key, level_box, normal(), &layout.grid, scene) {
-                sum.divide();
-            }
-        },
-    );
 }
 
 /// Hides the surface where two flat fronts of a cell lie on each other, such as a box's bottom and the floor.
