@@ -100,9 +100,9 @@ pub trait Estimator: Sync {
         })
     }
 
-    /// Those that defer answer nothing but this: the light at every place, in order.
-    fn answer(&self, _places: &[Self::Place]) -> Vec<Rgb> {
-        Vec::new()
+    /// Those that defer answer nothing but this: the light at every place, in order; black where it cannot be told.
+    fn answer(&self, places: &[Self::Place]) -> Vec<Rgb> {
+        places.iter().map(|place| self.read(place).unwrap_or(Rgb::BLACK)).collect()
     }
 
     /// Radiance that those of the diffuse and glossy lobes of `surface` that are in `lobes` send to where the ray came from;
