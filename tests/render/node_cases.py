@@ -363,20 +363,52 @@ def _noises() -> Iterator[tuple[str, NodeCase]]:
         options = {"wave_type": kind, f"{kind.lower()}_direction": direction, "wave_profile": profile}
         make = output_of("TexWave", "Color", waves, **options)
         yield f"Wave Texture/{kind} {direction} {profile}", NodeCase(make)
-    cells = {"Scale": 3.0, "Smoothness": 0.6, "Exponent": 0.7, "Randomness": 0.8}
-    for dimensions in ("2D", "3D"):
+
+
+def _cells() -> Iterator[tuple[str, NodeCase]]:
+    """Voronoi's cells."""
+    cells = {"W": IMAGE, "Scale": 3.0, "Smoothness": 0.6, "Exponent": 0.7, "Randomness": 0.8}
+    for dimensions in ("1D", "2D", "3D", "4D"):
+        space = {"voronoi_dimensions": dimensions}
         for feature in ("F1", "F2", "SMOOTH_F1", "DISTANCE_TO_EDGE"):
             for metric in ("EUCLIDEAN", "MINKOWSKI"):
                 options = {"voronoi_dimensions": dimensions, "feature": feature, "distance": metric}
                 make = output_of("TexVoronoi", "Distance", cells, **options)
                 yield f"Voronoi Texture/{dimensions} {feature} {metric}", NodeCase(make)
-    for output in ("Color", "Position"):
-        for feature in ("F1", "F2", "SMOOTH_F1"):
-            make = output_of("TexVoronoi", output, {"Scale": 3.0}, feature=feature)
-            yield f"Voronoi Texture/{feature} {output}", NodeCase(make, EDGES)
+        make = output_of("TexVoronoi", "Radius", cells, feature="N_SPHERE_RADIUS", **space)
+        yield f"Voronoi Texture/{dimensions} N-Sphere Radius", NodeCase(make, EDGES)
+        for output in ("Color", "W" if dimensions in ("1D", "4D") else "Position"):
+            make = output_of("TexVoronoi", output, cells, **space)
+            yield f"Voronoi Texture/{dimensions} {output}", NodeCase(make, EDGES)
+    for feature in ("F2", "SMOOTH_F1"):
+        make = output_of("TexVoronoi", "Color", {"Scale": 3.0}, feature=feature)
+        yield f"Voronoi Texture/{feature} Color", NodeCase(make, EDGES)
+    yield from _lattices({**cells, "Detail": 2.5, "Roughness": 0.6, "Lacunarity": 2.2})
+
+
+def _lattices(inputs: Mapping[Any, Any]) -> Iterator[tuple[str, NodeCase]]:
+    """Voronoi's cells with finer ones on top."""
+    features = (
+        ("1D", "DISTANCE_TO_EDGE"),
+        ("2D", "F1"),
+        ("2D", "DISTANCE_TO_EDGE"),
+        ("3D", "F2"),
+        ("4D", "F1"),
+    )
+    for normalize in (True, False):
+        how = "normalized" if normalize else "as it is"
+        for dimensions, feature in features:
+            options = {"voronoi_dimensions": dimensions, "feature": feature, "normalize": normalize}
+            make = output_of("TexVoronoi", "Distance", inputs, **options)
+            yield f"Voronoi Texture/{dimensions} {feature} Detail, {how}", NodeCase(make)
+        for output in ("Color", "Position"):
+            make = output_of("TexVoronoi", output, inputs, normalize=normalize)
+            yield f"Voronoi Texture/{output} Detail, {how}", NodeCase(make, EDGES)
 
 
 NODES: dict[str, NodeCase] = dict(
-    case for part in (_surface_nodes, _value_nodes, _color_nodes, _textures, _noises) for case in part()
+    case
+    for part in (_surface_nodes, _value_nodes, _color_nodes, _textures, _noises, _cells)
+    for case in part()
 )
 """By the node's name and what is special."""

@@ -60,9 +60,10 @@ fn any_instruction(kind: usize, r: [u16; 10], x: [f32; 4]) -> Instruction {
         ),
         (json!({"kind": "white_noise", "dimensions": dimensions, "color": true}), 2),
         (
-            json!({"kind": "voronoi", "feature": pick(&["F1", "F2", "SMOOTH_F1", "DISTANCE_TO_EDGE"]),
-            "metric": pick(&["EUCLIDEAN", "MINKOWSKI"]), "flat": r[8].is_multiple_of(2), "output": "position"}),
-            5,
+            json!({"kind": "voronoi", "dimensions": dimensions, "hash": pick(&["words", "floats"]),
+            "feature": pick(&["F1", "F2", "SMOOTH_F1", "DISTANCE_TO_EDGE", "N_SPHERE_RADIUS"]),
+            "metric": pick(&["EUCLIDEAN", "MINKOWSKI"]), "normalize": true, "output": "position"}),
+            9,
         ),
         (json!({"kind": "wave", "rings": true, "direction": "Z", "profile": "SAW"}), 7),
         (json!({"kind": "magic", "depth": r[8] % 256}), 3),

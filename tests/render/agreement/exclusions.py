@@ -34,7 +34,6 @@ NOT_RENDERED: dict[str, str] = {
     "node/Texture Coordinate, Window": _TYPICAL,
     "node/Geometry, Tangent, Pointiness and Random Per Island": _TYPICAL,
     "node/Light Path, lengths and depths": _TYPICAL,
-    "node/Voronoi Texture, one and four dimensions, Detail, N-Sphere Radius": _TYPICAL,
     "node/Gabor Texture": _TYPICAL,
     "node/IES Texture": _TYPICAL,
     "node/Blackbody of a temperature that varies": _TYPICAL,
