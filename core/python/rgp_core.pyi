@@ -29,6 +29,11 @@ def check_settings(settings: dict[str, dict[str, Any]]) -> None:
 def embree_version(embree_library: str) -> str:
     """Version of the Embree library at that path, such as "4.4.0". Raises EmbreeError."""
 
+def hosek_wilkie(elevation: float, turbidity: float, albedo: float) -> list[tuple[list[float], float]]:
+    """What the sky model of Hosek and Wilkie 2012 tabulates for each of red, green and blue: nine parameters of the
+    distribution, and the mean radiance that it is multiplied by. elevation of the sun 0 to π/2 rad, turbidity 1 to 10,
+    albedo 0 to 1; raises ValueError beyond."""
+
 def trace_floor(scene: Scene, settings: dict[str, dict[str, Any]], embree_library: str) -> dict[str, Any]:
     """Gather rays of a render traced one by one, without shading: {"rays", "seconds"}. What a gather is measured by."""
 

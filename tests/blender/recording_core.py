@@ -154,6 +154,7 @@ class Core:
     SceneBuilder = SceneBuilder
     Session = Session
     embree_version = staticmethod(lambda _path: "4.4.0")
+    hosek_wilkie = staticmethod(lambda *_params: [([0.1] * 9, 1.0)] * 3)
     last: SceneBuilder
     settings: dict[str, Any]
     seconds = 0.05
