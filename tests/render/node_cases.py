@@ -148,12 +148,11 @@ def _sequence(**settings: Any) -> Make:
     return make
 
 
-def _tiled(numbers: tuple[int, ...]) -> Make:
-    """A picture for each tile; the plane lies on 1001 and 1002."""
+def _tiled(numbers: tuple[int, ...], packed: bool = False) -> Make:
+    """A picture for each tile; the plane lies on 1001 and 1002. Of those that are packed no file is left."""
 
     def make(b_tree: Any) -> Any:
-        for number in numbers:
-            _saved(f"rgp_tiles_{len(numbers)}.{number}.png", number)
+        files = [_saved(f"rgp_tiles_{len(numbers)}.{number}.png", number) for number in numbers]
         folder = Path(bpy.app.tempdir)
         b_texture = b_tree.nodes.new("ShaderNodeTexImage")
         b_texture.image = bpy.data.images.load(str(folder / f"rgp_tiles_{len(numbers)}.{numbers[0]}.png"))
@@ -178,11 +177,26 @@ def _image_with_alpha(uses_alpha: bool) -> Make:
 
     return make
 
+        if packed:
+            b_texture.image.pack()
+            for file in files:
+                Path(file).unlink()
 
 def _white_noise(dimensions: str) -> Make:
     def make(b_tree: Any) -> Any:
         b_whole = b_tree.nodes.new("ShaderNodeVectorMath")
         b_whole.operation, b_whole.inputs[1].default_value = "SNAP", (0.5, 0.5, 0.5)
+def _pictured(make: Make) -> Make:
+    """The image of noise for the node that is made."""
+
+    def make_with_image(b_tree: Any) -> Any:
+        b_output = make(b_tree)
+        b_output.node.image = noise_image("sRGB")
+        return b_output
+
+    return make_with_image
+
+
         b_tree.links.new(b_tree.nodes.new("ShaderNodeUVMap").outputs[0], b_whole.inputs[0])
         b_noise = b_tree.nodes.new("ShaderNodeTexWhiteNoise")
         b_noise.noise_dimensions = dimensions
@@ -309,8 +323,9 @@ def _color_nodes() -> Iterator[tuple[str, NodeCase]]:
 def _textures() -> Iterator[tuple[str, NodeCase]]:
     """Images, and patterns of one kind of feature."""
     for extension in ("REPEAT", "EXTEND", "CLIP", "MIRROR"):
-        for interpolation in ("Linear", "Closest"):
-            bound = SMOOTH if interpolation == "Linear" and extension != "CLIP" else EDGES
+        for interpolation in ("Linear", "Closest", "Cubic"):
+            is_smooth = interpolation != "Closest" and (interpolation, extension) != ("Linear", "CLIP")
+            bound = SMOOTH if is_smooth else EDGES
             case = NodeCase(_image(extension, interpolation), bound)
             yield f"Image Texture/{extension} {interpolation}", case
     for uses_alpha in (True, False):
@@ -350,6 +365,9 @@ def _noises() -> Iterator[tuple[str, NodeCase]]:
     """Noise, waves and Voronoi's cells."""
     octaves = {"W": 0.7, "Scale": 3.0, "Detail": 2.5, "Roughness": 0.6, "Lacunarity": 2.2, "Distortion": 0.4}
     for dimensions in ("1D", "2D", "3D", "4D"):
+    for projection in ("SPHERE", "TUBE", "BOX"):
+        make = output_of("TexImage", inputs={0: "TexCoord"}, projection=projection)
+        yield f"Image Texture/{projection}", NodeCase(_pictured(make), EDGES)
         for output in ("Fac", "Color"):
             make = output_of("TexNoise", output, octaves, noise_dimensions=dimensions)
             yield f"Noise Texture/{dimensions} {output}", NodeCase(make)
@@ -363,6 +381,7 @@ def _noises() -> Iterator[tuple[str, NodeCase]]:
         options = {"wave_type": kind, f"{kind.lower()}_direction": direction, "wave_profile": profile}
         make = output_of("TexWave", "Color", waves, **options)
         yield f"Wave Texture/{kind} {direction} {profile}", NodeCase(make)
+    yield "Image Texture/UDIM tiles, packed", NodeCase(_tiled((1001, 1002), packed=True), EDGES)
 
 
 def _cells() -> Iterator[tuple[str, NodeCase]]:

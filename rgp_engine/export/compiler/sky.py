@@ -95,6 +95,6 @@ def _seen(c: "Compiler", direction: "Register", model: tuple[Any, ...]) -> "Regi
     texture = textures.get(key)
     if texture is None:
         textures[key] = texture = c.context.builder.add_texture("sky", _texels(*model), "linear")
-    place = c.emit("panorama", vector=direction, ball=False)
+    place = c.emit("panorama", vector=direction, projection="equirectangular")
     fields = {"extension": "repeat", "interpolation": "linear", "unassociate": False}
     return c.emit("image", texture=texture, vector=place, **fields)

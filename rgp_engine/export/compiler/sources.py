@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from .compiler import Compiler, Operand, Register
 
 _EXTENSIONS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
+_INTERPOLATIONS = {"Linear": "linear", "Closest": "closest", "Cubic": "cubic", "Smart": "cubic"}
 
 
 def _image(c: "Compiler", source: Output) -> "Operand | None":
@@ -22,7 +23,7 @@ def _image(c: "Compiler", source: Output) -> "Operand | None":
         return None
     fields = {
         "extension": _EXTENSIONS[b_node.extension],
-        "interpolation": _interpolation(c, b_node),
+        "interpolation": _INTERPOLATIONS[b_node.interpolation],
         "unassociate": unassociates(b_node),
     }
     vector = own_mapping(c, b_node, c.input(source, "Vector") if c.linked(source, "Vector") else _uv(c))
@@ -33,12 +34,14 @@ def _image(c: "Compiler", source: Output) -> "Operand | None":
     elif tiles:
         color = c.emit("tiled_image", tiles=tiles, vector=vector, **fields)
     else:
+        if b_node.projection != "FLAT":
+            vector = c.emit("panorama", vector=vector, projection=b_node.projection.lower())
         color = c.emit("image", texture=texture, vector=vector, **fields)
     return c.emit("alpha", of=color) if source.b_socket.identifier == "Alpha" else color
 
 
 def _is_rendered(projection: str, texture: int | None, tiles: "list[dict[str, int]]") -> bool:
-    return projection == "FLAT" if tiles else texture is not None and projection in ("FLAT", "BOX")
+    return projection == "FLAT" if tiles else texture is not None
 
 
 def _environment(c: "Compiler", source: Output) -> "Operand | None":
@@ -48,17 +51,10 @@ def _environment(c: "Compiler", source: Output) -> "Operand | None":
         return None
     direction = c.input(source, "Vector") if c.linked(source, "Vector") else c.quantity("position")
     direction = own_mapping(c, b_node, direction)
-    place = c.emit("panorama", vector=direction, ball=b_node.projection == "MIRROR_BALL")
-    fields = {"texture": texture, "extension": "repeat", "interpolation": _interpolation(c, b_node)}
+    place = c.emit("panorama", vector=direction, projection=b_node.projection.lower())
+    interpolation = _INTERPOLATIONS[b_node.interpolation]
+    fields = {"texture": texture, "extension": "repeat", "interpolation": interpolation}
     return c.emit("image", vector=place, unassociate=False, **fields)
-
-
-def _interpolation(c: "Compiler", b_node: Any) -> str:
-    if b_node.interpolation not in ("Closest", "Linear"):
-        c.report_node(
-            b_node, f"{b_node.interpolation.lower()} interpolation is not supported yet; linear is used"
-        )
-    return "closest" if b_node.interpolation == "Closest" else "linear"
 
 
 def _uv(c: "Compiler") -> "Register":

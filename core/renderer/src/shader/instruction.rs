@@ -4,6 +4,7 @@ use serde::Deserialize;
 use smallvec::{SmallVec, smallvec};
 
 use super::arithmetic::{BlendMode, MathFunction, VectorFunction};
+use super::panorama::Projection;
 use super::pattern::{GradientShape, Pattern};
 use super::texture::{Extension, Interpolation};
 
@@ -127,8 +128,8 @@ pub enum Instruction {
         interpolation: Interpolation,
         unassociate: bool,
     },
-    /// Where a direction lies in an equirectangular panorama, or in the picture of a mirror ball.
-    Panorama { vector: Register, ball: bool },
+    /// Where a direction or point lies in a picture that is laid around it.
+    Panorama { vector: Register, projection: Projection },
     /// The disk of a sun of an angular radius (rad) in the direction `towards`, seen along `vector`: colors at its lowest and
     /// highest points, darker towards the limb; black around it and below a height (sine).
     SunDisk { vector: Register, towards: [f32; 3], radius: f32, bottom: [f32; 3], top: [f32; 3], lowest: f32 },

@@ -127,7 +127,7 @@ fn vectors(instruction: &Instruction, r: &Operands<'_>) -> Value {
             Value { v: v.extend(1.0), width: r.width(vector) * size.abs().max_element() }
         }
         Instruction::Normalize { vector } => Value::vector(r.vector(vector).normalize_or_zero()),
-        Instruction::Panorama { vector, ball } => panorama::place(r.value(vector), ball),
+        Instruction::Panorama { vector, projection } => panorama::place(r.value(vector), projection),
         Instruction::SunDisk { vector, towards, radius, bottom, top, lowest } => {
             let disk = panorama::SunDisk { towards, radius, bottom, top, lowest };
             disk.seen(r.value(vector))
