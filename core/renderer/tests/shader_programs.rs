@@ -102,6 +102,10 @@ fn any_instruction(kind: usize, r: [u16; 10], x: [f32; 4]) -> Instruction {
             let space = NormalSpace::Tangent;
             return Instruction::NormalMap { color: r[0], strength: r[1], space, attribute: r[2].into() };
         }
+        19 => json!({"op": "tangent", "generated": r[0]}),
+        20 => {
+            json!({"op": "panorama", "vector": r[0], "projection": pick(&["sphere", "tube", "mirror_ball"])})
+        }
         _ => return Instruction::Constant { value: x },
     };
     serde_json::from_value(record).expect("a record of an instruction")
@@ -116,7 +120,7 @@ fn any_number() -> impl Strategy<Value = f32> {
 
 /// Kind, operands and numbers of each instruction.
 fn any_steps() -> impl Strategy<Value = Vec<(usize, [u16; 10], [f32; 4])>> {
-    let step = (0_usize..22, prop::array::uniform10(0_u16..8), prop::array::uniform4(any_number()));
+    let step = (0_usize..24, prop::array::uniform10(0_u16..8), prop::array::uniform4(any_number()));
     prop::collection::vec(step, 1..12)
 }
 

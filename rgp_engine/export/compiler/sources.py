@@ -1,12 +1,12 @@
 """Nodes that look at the hit: textures, coordinates, geometry, attributes."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from ..coordinates import matrix_array
 from ..nodes import Output
 from .images import texture_of, tiles_of, unassociates
 from .mapping import own_mapping
+from .places import camera_position, inverse_rows, window_position
 from .sky import sky_texture
 
 if TYPE_CHECKING:
@@ -84,25 +84,10 @@ def _texture_coordinate(c: "Compiler", source: Output) -> "Operand | None":
         b_object = source.b_node.object
         if b_object is None:
             return c.quantity("object_position")
-        return c.transformed(c.quantity("position"), _inverse_rows(b_object.matrix_world))
+        return c.transformed(c.quantity("position"), inverse_rows(b_object.matrix_world))
     if name == "Camera":
-        return _camera_position(c)
-    return None
-
-
-def _camera_position(c: "Compiler") -> "Register":
-    """Position in the camera's space, z forwards."""
-    b_camera = c.context.b_depsgraph.scene_eval.camera
-    rows = _inverse_rows(b_camera.matrix_world.normalized())
-    rows[2] = [-x for x in rows[2]]
-    if c.of_world:
-        rows = [[*row[:3], 0.0] for row in rows]
-    return c.transformed(c.quantity("position"), rows)
-
-
-def _inverse_rows(b_matrix: Any) -> list[list[float]]:
-    rows: list[list[float]] = matrix_array(b_matrix.inverted_safe())[:3].tolist()
-    return rows
+        return camera_position(c)
+    return window_position(c) if name == "Window" else None
 
 
 _GEOMETRY = {
@@ -116,6 +101,10 @@ _GEOMETRY = {
 
 
 def _geometry(c: "Compiler", source: Output) -> "Operand | None":
+    if source.b_socket.identifier == "Tangent" and not c.of_world:
+        return c.emit("tangent", generated=c.generated())
+    if source.b_socket.identifier == "Random Per Island" and not c.of_world:
+        return c.attribute("island")
     name = _GEOMETRY.get(source.b_socket.identifier)
     return None if name is None else c.quantity(name)
 

@@ -185,6 +185,8 @@ pub enum Instruction {
     Fresnel { ior: Register, normal: Register },
     /// Blender's Layer Weight: its Fresnel (`facing` false) or Facing output.
     LayerWeight { blend: Register, normal: Register, facing: bool },
+    /// The direction around the object's z axis along the surface, from the place within the object's box (0 to 1).
+    Tangent { generated: Register },
     /// A normal from the color of a normal map; `attribute` is the UV map of a tangent space.
     NormalMap { color: Register, strength: Register, space: NormalSpace, attribute: u32 },
     /// A normal tilted by a height (m) that is known here and one step aside.
@@ -240,6 +242,7 @@ impl Instruction {
             | Self::Curves { color, .. } => smallvec![color],
             Self::Ramp { factor, .. } => smallvec![factor],
             Self::Fresnel { ior, normal } => smallvec![ior, normal],
+            Self::Tangent { generated } => smallvec![generated],
             Self::LayerWeight { blend, normal, .. } => smallvec![blend, normal],
             Self::NormalMap { color, strength, .. } => smallvec![color, strength],
             Self::Bump { strength, distance, height, height_x, height_y, normal, .. } => {
