@@ -336,10 +336,9 @@ def test_displacement_is_a_bump(scene, closures, recorded, problems):
 
 
 @pytest.mark.parametrize("second", ["none", "other", "same"])
-def test_shaders_with_different_normals_are_reported(scene, closures, problems, second):
+def test_every_shader_has_its_own_normal(scene, closures, recorded, problems, second):
     b_material, b_tree, b_output = build.material()
     b_shaders = [diffuse(b_tree, 0.1), diffuse(b_tree, 0.2)]
-    b_shaders[1].name = "Second"
     b_bump = b_tree.nodes.new("ShaderNodeBump")
     build.connect(b_tree, b_bump, b_shaders[0], "Normal")
     if second != "none":
@@ -347,20 +346,39 @@ def test_shaders_with_different_normals_are_reported(scene, closures, problems, 
         build.connect(b_tree, b_other, b_shaders[1], "Normal")
     build.connect(b_tree, mixed(b_tree, 0.5, *b_shaders), b_output, "Surface")
     closures(b_material)
-    message = "its Normal differs from another shader's, which is used for the whole material"
-    expected = [] if second == "same" else [f'Material: node "Second": {message}']
-    assert [text for text in problems() if text.startswith("Material")] == expected
+    program = recorded.last.material_of("Material")["program"]
+    normals = program["normals"]
+    assert [normal["closure"] for normal in normals] == ([0] if second == "none" else [0, 1])
+    assert all(program["instructions"][normal["register"]]["op"] == "bump" for normal in normals)
+    assert len({normal["register"] for normal in normals}) == (2 if second == "other" else 1)
+    assert program["normal"] is None
+    assert not any(text.startswith("Material") for text in problems())
 
 
-def test_a_coat_normal_does_not_bend_what_is_below(scene, closures, recorded, problems):
+def test_bump_map_correction_that_is_off_is_reported(scene, closures, problems):
     b_material, b_tree, b_output = build.material()
-    b_shader = b_tree.nodes.new("ShaderNodeBsdfPrincipled")
+    b_material.cycles.use_bump_map_correction = False
+    b_shader = diffuse(b_tree, 0.5)
+    build.connect(b_tree, b_tree.nodes.new("ShaderNodeBump"), b_shader, "Normal")
+    build.connect(b_tree, b_shader, b_output, "Surface")
+    closures(b_material)
+    assert "Material: Bump Map Correction cannot be switched off" in problems()
+
+
+@pytest.mark.parametrize("weight", [0.0, 1.0])
+def test_a_coat_normal_is_that_of_the_coat_alone(scene, closures, recorded, problems, weight):
+    b_material, b_tree, b_output = build.material()
+    b_shader = build.node(b_tree, "ShaderNodeBsdfPrincipled", Coat_Weight=weight)
     build.connect(b_tree, b_tree.nodes.new("ShaderNodeBump"), b_shader, "Coat Normal")
     build.connect(b_tree, b_shader, b_output, "Surface")
     closures(b_material)
-    message = "Coat Normal is not supported yet; Normal is used instead"
-    assert f'Material: node "Principled BSDF": {message}' in problems()
-    assert "program" not in recorded.last.material_of("Material")
+    material = recorded.last.material_of("Material")
+    if weight == 0.0:
+        assert "program" not in material
+    else:
+        (normal,) = material["program"]["normals"]
+        assert (normal["closure"], normal["coat"]) == (0, True)
+    assert not any(text.startswith("Material") for text in problems())
 
 
 def test_what_may_emit_somewhere_counts_as_a_light(scene, problems):
@@ -482,4 +500,4 @@ def test_displacement_and_volume_are_reported(scene, closures, recorded, problem
         "Material: this Displacement is not supported yet; left out",
     ]
     program = recorded.last.material_of("Material")["program"]
-    assert program["instructions"][program["normal"]]["op"] == "bump"
+    assert program["instructions"][program["normals"][0]["register"]]["op"] == "bump"

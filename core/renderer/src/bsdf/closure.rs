@@ -20,8 +20,7 @@ pub(super) struct Part {
     pub(super) normals: Layers<u8>,
 }
 
-/// A closure that makes lobes; transparency, constant emission and Lambert about the surface's one normal are merged in the
-/// material.
+/// A closure that makes lobes; transparency, constant emission and Lambert about the frame's normal are merged in the material.
 #[derive(Clone, Debug)]
 pub(super) enum PreparedClosure {
     /// Its color is in the weight.

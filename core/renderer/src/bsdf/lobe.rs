@@ -87,7 +87,16 @@ impl Lobe {
     /// Lambert reflection of `albedo`.
     pub(super) fn lambert(albedo: Rgb, slot: u8) -> Self {
         let (shape, fresnel) = (Shape::Lambert, Fresnel::Full);
-        Self { shape, fresnel, weight: albedo, gain: Rgb::WHITE, albedo, class: LobeSet::DIFFUSE, slot, normal: 0 }
+        Self {
+            shape,
+            fresnel,
+            weight: albedo,
+            gain: Rgb::WHITE,
+            albedo,
+            class: LobeSet::DIFFUSE,
+            slot,
+            normal: 0,
+        }
     }
 
     /// Lambert transmission of `albedo`.

@@ -1,17 +1,21 @@
-//! Materials whose closures do not share one shading normal: a clean coat over a bumped base, a mix of a bumped and a
-//! smooth shader.
+//! Materials whose closures have shading normals of their own: bumps and normal maps, a clean coat over a bumped base, a mix
+//! of a bumped and a smooth shader.
 //!
 //! Every lobe of such a material scatters about a normal of its own. The frame of its [`Bsdf`] has the geometric normal for
 //! shading normal too, and the BSDF is given for the cosine to that: a lobe's value is multiplied with the cosine to its own
 //! normal over the one to the frame's. So whoever multiplies with the frame's cosine gets what the lobe sends, light from
 //! above the surface and below the shading normal of some lobe is not lost, and nothing leaves below the surface.
+//!
+//! Where a normal leans away from the surface's own, diffuse lobes get darker towards the horizon instead of ending at a
+//! sharp edge, by the shadowing that a microfacet surface of as steep slopes would have (Estevez, Lecocq, Stein 2019, *A
+//! Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem*), as in Cycles from Blender 5.0 on.
 
 use glam::{Quat, Vec3};
-use smallvec::SmallVec;
+use smallvec::{SmallVec, smallvec};
 
 use super::closure::PreparedClosure;
 use super::lobe::{Lobe, Shape};
-use super::{Bsdf, LobeSet, ShadingFrame};
+use super::{Bsdf, LobeSet, ShadingFrame, ggx};
 use crate::color::Rgb;
 use crate::scene::MaterialProgram;
 use crate::scene::record::{ClosureRecord, Input, NormalRecord, WeightedClosure};
@@ -36,18 +40,19 @@ impl<T: Copy> Layers<T> {
 /// Which result of a program is the normal of which closure.
 #[derive(Clone, Debug)]
 pub(super) struct Assignment {
-    /// All that are used, once each; `None` is the surface's own. Never empty.
+    /// All that are used, once each, the surface's own first; `None` is the mesh's.
     pub(super) registers: SmallVec<[Option<Register>; 2]>,
-    /// By closure, see [`Lobe::normal`]; empty where all share one normal.
+    /// By closure, see [`Lobe::normal`]; empty where all have the surface's.
     closures: SmallVec<[Layers<u8>; 2]>,
 }
 
 impl Assignment {
     pub(super) fn new(closures: &[WeightedClosure], program: &MaterialProgram) -> Self {
-        let mut registers: SmallVec<[Option<Register>; 2]> = SmallVec::new();
+        let mut registers: SmallVec<[Option<Register>; 2]> = smallvec![program.normal];
         let mut number = |closure: usize, coat: bool| {
             let is_its = |record: &&NormalRecord| record.closure == closure && record.coat == coat;
-            let register = program.normals.iter().find(is_its).map(|record| record.register).or(program.normal);
+            let register =
+                program.normals.iter().find(is_its).map(|record| record.register).or(program.normal);
             let found = registers.iter().position(|known| *known == register);
             let place = found.unwrap_or_else(|| {
                 registers.push(register);
@@ -66,9 +71,6 @@ impl Assignment {
             } else {
                 Layers::all(number(index, false))
             });
-        }
-        if registers.is_empty() {
-            registers.push(program.normal);
         }
         if registers.len() == 1 {
             layers.clear();
@@ -99,7 +101,7 @@ fn has_coat(closure: &ClosureRecord, index: usize, program: &MaterialProgram) ->
 /// The normals of a material at one hit; none where all closures share the one of the frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Normals {
-    /// Unit vectors, on the mesh's own side.
+    /// Unit vectors, on the mesh's own side; the first is the surface's own.
     vectors: SmallVec<[Vec3; 4]>,
     /// By closure, see [`Lobe::normal`].
     closures: SmallVec<[Layers<u8>; 2]>,
@@ -149,18 +151,28 @@ impl Normals {
         let cos = |normal, mirrors| wo.dot(self.frame(normal, mirrors, wo, frame).ns).clamp(0.0, 1.0);
         Layers { base: cos(layers.base, true), coat: cos(layers.coat, true), sheen: cos(layers.sheen, false) }
     }
+
+    /// Share of light from `wi` that arrives at a diffuse lobe about the normal `ns`, see the module.
+    fn unshadowed(&self, ns: Vec3, wi: Vec3) -> f32 {
+        let (leaning, cos) = (self.vectors[0].dot(ns), self.vectors[0].dot(wi));
+        if leaning * cos * wi.dot(ns) <= 0.0 {
+            return 0.0;
+        }
+        let slope2 = (1.0 - leaning * leaning).max(0.0) / (leaning * leaning);
+        let alpha = (0.125 * slope2).min(1.0).sqrt();
+        1.0 / (1.0 + ggx::lambda(alpha, cos))
+    }
 }
 
 impl Bsdf<'_> {
     /// The frame of a lobe that has a normal of its own.
-    #[cold]
     pub(super) fn own_frame(&self, lobe: &Lobe) -> ShadingFrame {
         let mirrors = matches!(lobe.shape, Shape::Reflection { .. } | Shape::Transmission { .. });
         self.material.normals().frame(lobe.normal, mirrors, self.wo, &self.frame)
     }
 
     /// As [`Lobe::eval`], of a lobe that has a normal of its own, for the cosine to the frame's.
-    #[cold]
+    #[inline(never)]
     pub(super) fn eval_own(&self, lobe: &Lobe, wi: Vec3) -> (Rgb, f32) {
         let frame = self.own_frame(lobe);
         let cos = wi.dot(frame.ns);
@@ -168,7 +180,11 @@ impl Bsdf<'_> {
             return (Rgb::BLACK, 0.0);
         }
         let (value, pdf) = lobe.eval(&frame, self.wo, wi);
-        (value * (cos.abs() / wi.dot(self.frame.ns).abs().max(1e-6)), pdf)
+        let arriving = match lobe.shape {
+            Shape::Reflection { .. } | Shape::Transmission { .. } => 1.0,
+            _ => self.material.normals().unshadowed(frame.ns, wi),
+        };
+        (value * (arriving * cos.abs() / wi.dot(self.frame.ns).abs().max(1e-6)), pdf)
     }
 
     /// Flux over the area of the surface times this is the irradiance that lobes of [`LobeSet::LAMBERT`] with other normals
@@ -179,11 +195,13 @@ impl Bsdf<'_> {
         if self.material.normals().is_shared() { Rgb::WHITE } else { self.own_lambert_factor() }
     }
 
-    #[cold]
+    #[inline(never)]
     fn own_lambert_factor(&self) -> Rgb {
         let (mut seen, mut total) = (Rgb::BLACK, Rgb::BLACK);
         for lobe in self.lobes(LobeSet::LAMBERT) {
-            seen += lobe.albedo * self.own_frame(lobe).irradiance_factor(self.wo);
+            let frame = self.own_frame(lobe);
+            let arriving = self.material.normals().unshadowed(frame.ns, self.wo);
+            seen += lobe.albedo * (arriving * frame.irradiance_factor(self.wo));
             total += lobe.albedo;
         }
         Rgb([0, 1, 2].map(|c| if total.0[c] > 0.0 { seen.0[c] / total.0[c] } else { 1.0 }))

@@ -57,8 +57,8 @@ impl Varying {
         PreparedMaterial::at_hit(&self.closures_with(registers), self.normals.at(normals))
     }
 
-    /// The results that are shading normals, at least one; `None` is the surface's own. Where there are several, closures do
-    /// not share one, and the shading normal of their [`Bsdf`](super::Bsdf) must be the geometric one.
+    /// The results that are shading normals, the surface's own first; `None` is the mesh's. Where there are several, closures
+    /// have others than the surface, and the shading normal of their [`Bsdf`](super::Bsdf) must be the geometric one.
     #[must_use]
     pub fn normals(&self) -> &[Option<Register>] {
         &self.normals.registers
