@@ -335,52 +335,6 @@ def test_displacement_is_a_bump(scene, closures, recorded, problems):
     assert "Material: its Displacement is rendered as a bump" in problems()
 
 
-@pytest.mark.parametrize("second", ["none", "other", "same"])
-def test_every_shader_has_its_own_normal(scene, closures, recorded, problems, second):
-    b_material, b_tree, b_output = build.material()
-    b_shaders = [diffuse(b_tree, 0.1), diffuse(b_tree, 0.2)]
-    b_bump = b_tree.nodes.new("ShaderNodeBump")
-    build.connect(b_tree, b_bump, b_shaders[0], "Normal")
-    if second != "none":
-        b_other = b_bump if second == "same" else build.node(b_tree, "ShaderNodeBump", Strength=0.3)
-        build.connect(b_tree, b_other, b_shaders[1], "Normal")
-    build.connect(b_tree, mixed(b_tree, 0.5, *b_shaders), b_output, "Surface")
-    closures(b_material)
-    program = recorded.last.material_of("Material")["program"]
-    normals = program["normals"]
-    assert [normal["closure"] for normal in normals] == ([0] if second == "none" else [0, 1])
-    assert all(program["instructions"][normal["register"]]["op"] == "bump" for normal in normals)
-    assert len({normal["register"] for normal in normals}) == (2 if second == "other" else 1)
-    assert program["normal"] is None
-    assert not any(text.startswith("Material") for text in problems())
-
-
-def test_bump_map_correction_that_is_off_is_reported(scene, closures, problems):
-    b_material, b_tree, b_output = build.material()
-    b_material.cycles.use_bump_map_correction = False
-    b_shader = diffuse(b_tree, 0.5)
-    build.connect(b_tree, b_tree.nodes.new("ShaderNodeBump"), b_shader, "Normal")
-    build.connect(b_tree, b_shader, b_output, "Surface")
-    closures(b_material)
-    assert "Material: Bump Map Correction cannot be switched off" in problems()
-
-
-@pytest.mark.parametrize("weight", [0.0, 1.0])
-def test_a_coat_normal_is_that_of_the_coat_alone(scene, closures, recorded, problems, weight):
-    b_material, b_tree, b_output = build.material()
-    b_shader = build.node(b_tree, "ShaderNodeBsdfPrincipled", Coat_Weight=weight)
-    build.connect(b_tree, b_tree.nodes.new("ShaderNodeBump"), b_shader, "Coat Normal")
-    build.connect(b_tree, b_shader, b_output, "Surface")
-    closures(b_material)
-    material = recorded.last.material_of("Material")
-    if weight == 0.0:
-        assert "program" not in material
-    else:
-        (normal,) = material["program"]["normals"]
-        assert (normal["closure"], normal["coat"]) == (0, True)
-    assert not any(text.startswith("Material") for text in problems())
-
-
 def test_what_may_emit_somewhere_counts_as_a_light(scene, problems):
     b_material, b_tree, b_output = build.material()
     b_emission = b_tree.nodes.new("ShaderNodeEmission")
