@@ -139,17 +139,17 @@ impl Normals {
         self.vectors[usize::from(normal) - 1]
     }
 
-    /// The frame about a normal. Where it `mirrors`, it is bent as for mirrors: what has a normal of its own need not keep it
-    /// for others.
-    fn frame(&self, normal: u8, mirrors: bool, wo: Vec3, frame: &ShadingFrame) -> ShadingFrame {
-        let own = ShadingFrame::new(wo, frame.unturned()[0], self.vector(normal));
-        if mirrors { own.mirroring_above(wo) } else { own }
+    /// The frame about a normal, which is bent so that `wo` is above it.
+    fn frame(&self, normal: u8, wo: Vec3, frame: &ShadingFrame) -> ShadingFrame {
+        ShadingFrame::new(wo, frame.unturned()[0], self.vector(normal))
     }
 
     /// Cosines of the viewer to the normals of a closure.
     pub(super) fn cosines(&self, layers: Layers<u8>, wo: Vec3, frame: &ShadingFrame) -> Layers<f32> {
-        let cos = |normal, mirrors| wo.dot(self.frame(normal, mirrors, wo, frame).ns).clamp(0.0, 1.0);
-        Layers { base: cos(layers.base, true), coat: cos(layers.coat, true), sheen: cos(layers.sheen, false) }
+        let cos = |frame: ShadingFrame| wo.dot(frame.ns).clamp(0.0, 1.0);
+        let [base, coat, sheen] =
+            [layers.base, layers.coat, layers.sheen].map(|normal| self.frame(normal, wo, frame));
+        Layers { base: cos(base.mirroring_above(wo)), coat: cos(coat.mirroring_above(wo)), sheen: cos(sheen) }
     }
 
     /// Share of light from `wi` that arrives at a diffuse lobe about the normal `ns`, see the module.
@@ -165,10 +165,20 @@ impl Normals {
 }
 
 impl Bsdf<'_> {
-    /// The frame of a lobe that has a normal of its own.
+    /// The frame of a lobe that has a normal of its own. What is as bright from everywhere needs no viewer above it; mirrors
+    /// are bent for themselves alone.
     pub(super) fn own_frame(&self, lobe: &Lobe) -> ShadingFrame {
-        let mirrors = matches!(lobe.shape, Shape::Reflection { .. } | Shape::Transmission { .. });
-        self.material.normals().frame(lobe.normal, mirrors, self.wo, &self.frame)
+        let normals = self.material.normals();
+        let bent = || normals.frame(lobe.normal, self.wo, &self.frame);
+        match lobe.shape {
+            Shape::Lambert | Shape::Translucent => {
+                let outward = normals.vector(lobe.normal);
+                let ns = if self.frame.entering { outward } else { -outward };
+                ShadingFrame { ns, ..self.frame }
+            }
+            Shape::Sheen(_) => bent(),
+            Shape::Reflection { .. } | Shape::Transmission { .. } => bent().mirroring_above(self.wo),
+        }
     }
 
     /// As [`Lobe::eval`], of a lobe that has a normal of its own, for the cosine to the frame's.
