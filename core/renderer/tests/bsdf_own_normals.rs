@@ -258,8 +258,8 @@ fn bins_hold_what_the_viewer_sees() {
         let left = material.seen(wo, &normals).eval_rough(&[[wi.x], [wi.y], [wi.z]]);
         let viewer = material.seen(wi, &normals);
         let expected = viewer.eval(wo, LobeSet::ROUGH, RADIANCE);
-        // Normals that are bent towards the viewer are bent towards the photon here.
-        if wo.dot(normals[0]).min(wi.dot(normals[0])) < 0.2 {
+        // A normal that would mirror the photon below the surface is bent for the photon, not for the viewer.
+        if mirrored(wo, normals[0]).z.min(mirrored(wi, normals[0]).z) < 0.02 {
             continue;
         }
         let found = Rgb([0, 1, 2].map(|c| left[c][0])) * viewer.rough_gain();
