@@ -27,7 +27,7 @@ pub use record::{LampShape, ObjectInfo, Projection, visibility};
 
 use crate::color::Rgb;
 use crate::shader::{Program, Register, Texture};
-use record::{OutputRecord, WeightedClosure};
+use record::{NormalRecord, OutputRecord, WeightedClosure};
 
 /// Where scene space lies in the world: `p_scene = (p_world - center) * scale`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -174,8 +174,10 @@ pub struct MaterialProgram {
     pub program: Program,
     /// Which results are inputs of which closures.
     pub outputs: Vec<OutputRecord>,
-    /// The result that is the shading normal.
+    /// The result that is the shading normal of what has none of its own.
     pub normal: Option<Register>,
+    /// Closures with a shading normal of their own.
+    pub normals: Vec<NormalRecord>,
 }
 
 /// A lamp in scene space.

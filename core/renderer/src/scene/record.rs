@@ -208,8 +208,23 @@ pub struct ProgramRecord {
     pub instructions: Vec<Instruction>,
     /// Which results are inputs.
     pub outputs: Vec<OutputRecord>,
-    /// The result that is the shading normal (world space).
+    /// The result that is the shading normal (world space) of what has none of its own.
     pub normal: Option<Register>,
+    /// Closures with a shading normal of their own.
+    #[serde(default)]
+    pub normals: Vec<NormalRecord>,
+}
+
+/// A result that is the shading normal (world space) of one closure.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NormalRecord {
+    /// Index of the closure.
+    pub closure: usize,
+    /// True: of its coat alone; false: of all but its coat.
+    pub coat: bool,
+    /// The result.
+    pub register: Register,
 }
 
 /// A result that is an input of a closure.
