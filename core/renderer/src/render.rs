@@ -93,8 +93,19 @@ fn passes(
         bytes: scene.textures.iter().map(Texture::bytes).sum(),
     };
     let mut lit = light(scene, settings, library, progress)?;
+    let catchers = lit.plan.shadow_catcher.then(|| scene.without_objects());
+    let without = catchers.as_ref().map(|catchers| light_without(catchers, settings, library, progress));
+    let without = without.transpose()?;
     stats.seconds.accel = clock.elapsed().as_secs_f64();
     stats.effects = lit.plan.report();
+    if let Some(without) = &without {
+        film.expect_catchers(scene.world.film_transparent);
+        let [_, _, width, height] = scene.camera.region;
+        let film_bytes = Film::catcher_bytes_for(width, height) as usize;
+        let lights = &without.lights;
+        let bytes = film_bytes + lights.bytes() + lights.emitter_bytes() + lights.world_bytes();
+        stats.effects[Effect::ShadowCatcher as usize].bytes = bytes;
+    }
     if lit.plan.direct {
         stats.effects[Effect::DirectLight as usize].bytes = lit.lights.bytes();
     }
@@ -108,13 +119,6 @@ fn passes(
     let seen = if lit.plan.indirect() { gather::readings(&lit, rays, seed) } else { Vec::new() };
     stats.aim = aim::aim(&mut lit, &seen, settings);
     progress.check()?;
-    let catchers = lit.plan.shadow_catcher.then(|| scene.without_objects());
-    let without = catchers.as_ref().map(|catchers| light_without(catchers, settings, library, progress));
-    let without = without.transpose()?;
-    if without.is_some() {
-        film.expect_catchers(scene.world.film_transparent);
-        stats.effects[Effect::ShadowCatcher as usize].bytes = film.catcher_bytes();
-    }
     let work = Work { lit: &lit, without: without.as_ref(), seen: &seen, settings, film, progress };
     match settings.gather.estimator {
         EstimatorKind::Pyramid => work.pyramid(stats),

@@ -3,10 +3,12 @@
 mod support;
 
 use glam::{DMat4, DVec3, Vec3};
+use rgp_renderer::color::Rgb;
 use rgp_renderer::effects_plan::Effect;
+use rgp_renderer::film::{CatcherSample, Film, PixelSample};
 use rgp_renderer::scene::record::{LampRecord, MaterialRecord, WorldRecord};
 use rgp_renderer::scene::{MeshArrays, SceneBuilder, visibility};
-use rgp_renderer::settings::{RenderSettings, Switch};
+use rgp_renderer::settings::{FilmSettings, PixelFilter, RenderSettings, Switch};
 use support::*;
 
 const PIXELS: u32 = 16;
@@ -39,6 +41,30 @@ fn few_rays() -> RenderSettings {
 
 fn transparent(world: WorldRecord) -> WorldRecord {
     WorldRecord { film_transparent: true, ..world }
+}
+
+/// Half of a pixel is an object, half a catcher that has lost half of its light, before a world of 4.
+#[test]
+fn a_pixel_is_what_is_beside_catchers_and_their_shadow() {
+    for (is_transparent, expected) in [(true, [1.0, 0.75]), (false, [2.0, 1.0])] {
+        let settings =
+            FilmSettings { filter: PixelFilter::Box, filter_width: 1.0, ..FilmSettings::default() };
+        let film = Film::new(1, 1, &settings);
+        film.expect_catchers(is_transparent);
+        for (half, (direct, is_caught)) in [(2.0, false), (0.3, true)].into_iter().enumerate() {
+            let light = |value: f32| Rgb::splat(if is_caught { value } else { 0.0 });
+            let background = light(if is_transparent { 0.0 } else { 4.0 });
+            let caught = CatcherSample { is_caught, before: Rgb::BLACK, without: light(0.6), background };
+            let seen =
+                PixelSample { direct: Rgb::splat(direct), alpha: 1.0, taken: true, ..PixelSample::default() };
+            film.take_catchers(0, vec![caught]);
+            film.take(0, vec![seen]);
+            film.finish_pass(1, half);
+        }
+        let [light, alpha] = expected;
+        assert_eq!(film.combined(), [light, light, light, alpha]);
+        assert_eq!(film.shadow_catcher(), [0.5; 3]);
+    }
 }
 
 /// A screen over the half x > 0, black and unseen, below a point lamp.

@@ -10,7 +10,7 @@
 mod costs;
 
 use crate::bsdf::{LobeSet, PreparedMaterial};
-use crate::scene::{Object, Scene, World, visibility};
+use crate::scene::{Object, Scene, World};
 use crate::settings::{EffectSettings, Switch};
 use crate::stats::EffectStats;
 
@@ -210,7 +210,7 @@ impl EffectsPlan {
             transparency: computed(Effect::AlphaTransparency),
             depth_of_field: computed(Effect::DepthOfField),
             motion_blur: computed(Effect::MotionBlur) && moves(scene),
-            shadow_catcher: computed(Effect::ShadowCatcher) && first_catcher(scene).is_some(),
+            shadow_catcher: computed(Effect::ShadowCatcher) && scene.catcher().is_some(),
             gathers: planned.iter().any(|line| {
                 line.is_computed() && (line.effect.is_path_class() || line.effect == Effect::MirrorsAndGlass)
             }),
@@ -377,16 +377,10 @@ fn motion_blur(scene: &Scene, settings: &EffectSettings) -> Planned {
     Planned { effect, switch: effect.switch(settings), because }
 }
 
-/// A shadow catcher that the camera sees.
-fn first_catcher(scene: &Scene) -> Option<&Object> {
-    let is_seen = |object: &&Object| object.is_catcher() && object.visibility & visibility::CAMERA != 0;
-    scene.objects.iter().find(is_seen)
-}
-
 /// Plans what the camera sees of catchers.
 fn shadow_catcher(scene: &Scene, settings: &EffectSettings) -> Planned {
     let effect = Effect::ShadowCatcher;
-    let because = first_catcher(scene).map(|object| format!("'{}' is a shadow catcher", object.name));
+    let because = scene.catcher().map(|object| format!("'{}' is a shadow catcher", object.name));
     Planned { effect, switch: effect.switch(settings), because }
 }
 

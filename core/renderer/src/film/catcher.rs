@@ -115,10 +115,9 @@ impl Catchers {
         }
     }
 
-    /// Memory (bytes) for so many pixels.
-    pub(super) const fn bytes_for(pixels: usize) -> usize {
-        pixels * (2 * size_of::<CatcherSums>() + size_of::<CatcherSample>() + size_of::<Channels>())
-    }
+    /// Memory (bytes) that a pixel takes.
+    pub(super) const BYTES_OF_A_PIXEL: u64 =
+        (2 * size_of::<CatcherSums>() + size_of::<CatcherSample>() + size_of::<Channels>()) as u64;
 
     /// Takes the samples of one tile of the pass that is under way, in the order of its pixels. Gives how many were not finite
     /// and are left black.

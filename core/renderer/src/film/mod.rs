@@ -166,10 +166,10 @@ impl Film {
             .get_or_init(|| Catchers::new(is_transparent, self.tiles.len(), self.width * self.height));
     }
 
-    /// Memory (bytes) that shadow catchers take.
+    /// Memory (bytes) that shadow catchers take, where there are any.
     #[must_use]
-    pub fn catcher_bytes(&self) -> usize {
-        self.catchers.get().map_or(0, |_| Catchers::bytes_for(self.width * self.height))
+    pub const fn catcher_bytes_for(width: u32, height: u32) -> u64 {
+        width as u64 * height as u64 * Catchers::BYTES_OF_A_PIXEL
     }
 
     /// As [`Film::take`], for what was found of shadow catchers.

@@ -334,6 +334,13 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A shadow catcher that the camera sees.
+    #[must_use]
+    pub fn catcher(&self) -> Option<&Object> {
+        let is_seen = |object: &&Object| object.is_catcher() && object.visibility & visibility::CAMERA != 0;
+        self.objects.iter().find(is_seen)
+    }
+
     /// The shadow catchers alone, as ordinary objects, with the lamps and the world that light them.
     #[must_use]
     pub fn without_objects(&self) -> Self {
