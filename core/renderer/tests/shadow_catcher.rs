@@ -51,10 +51,10 @@ fn a_pixel_is_what_is_beside_catchers_and_their_shadow() {
             FilmSettings { filter: PixelFilter::Box, filter_width: 1.0, ..FilmSettings::default() };
         let film = Film::new(1, 1, &settings);
         film.expect_catchers(is_transparent);
-        for (half, (direct, is_caught)) in [(2.0, false), (0.3, true)].into_iter().enumerate() {
+        for (half, (direct, is_caught)) in [(2.0, false), (0.25, true)].into_iter().enumerate() {
             let light = |value: f32| Rgb::splat(if is_caught { value } else { 0.0 });
             let background = light(if is_transparent { 0.0 } else { 4.0 });
-            let caught = CatcherSample { is_caught, before: Rgb::BLACK, without: light(0.6), background };
+            let caught = CatcherSample { is_caught, before: Rgb::BLACK, without: light(0.5), background };
             let seen =
                 PixelSample { direct: Rgb::splat(direct), alpha: 1.0, taken: true, ..PixelSample::default() };
             film.take_catchers(0, vec![caught]);
@@ -165,7 +165,7 @@ fn other_objects_and_their_lamps_are_no_shadow() {
         assert_eq!(seen.combined[center..center + 4], ordinary.combined[center..center + 4]);
         assert_eq!(seen.combined[..4], [0.0; 4], "in the light");
         let shadows =
-            seen.combined.chunks(4).filter(|pixel| pixel[..3] == [0.0; 3] && pixel[3] > 0.9).count();
+            seen.combined.chunks(4).filter(|pixel| pixel[..3] == [0.0; 3] && pixel[3] > 0.5).count();
         assert_eq!(shadows > 0, lamp != 0, "{shadows} pixels in shadow");
     }
     assert!(picture(UNSEEN, 0).combined.iter().all(|value| *value == 0.0));
