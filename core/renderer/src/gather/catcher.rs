@@ -112,9 +112,9 @@ impl<'a, E: Estimator> Block<'a, '_, E> {
         self.lambert.clone_from(&seen.lambert);
         self.others = [None; LANES];
         self.has_vertices = false;
-        for lane in 0..LANES {
-            self.lambert.set[lane] &= is_caught[lane];
-            self.vertices[lane] = seen.vertices[lane].take().filter(|_| is_caught[lane]);
+        for (lane, is_caught) in is_caught.into_iter().enumerate() {
+            self.lambert.set[lane] &= is_caught;
+            self.vertices[lane] = seen.vertices[lane].take().filter(|_| is_caught);
             self.has_vertices |= self.vertices[lane].is_some();
             (self.samples[lane].direct, self.samples[lane].indirect) = (Rgb::BLACK, Rgb::BLACK);
         }
