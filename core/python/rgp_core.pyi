@@ -123,8 +123,8 @@ class Session:
         unknown, seconds_to_target also where there is no target or it will not be reached."""
 
     def picture(self, layer: str) -> npt.NDArray[np.float32]:
-        """Mean of the passes so far, rows from the bottom: "combined" (H, W, 4), "indirect" (H, W, 3); "error"
-        (H, W, 1) is the standard error of combined; "audit" (H, W, 1) the part of the light that an audit found wrong,
+        """Mean of the passes so far, rows from the bottom: "combined" (H, W, 4), "indirect" (H, W, 3),
+        "shadow_catcher" (H, W, 3); "error" (H, W, 1) is the standard error of combined; "audit" (H, W, 1) the part of the light that an audit found wrong,
         from -1 (all is missing) to 1 (there should be none), 0 where nothing is known to be wrong."""
 
     def stats(self) -> dict[str, Any]:

@@ -129,6 +129,7 @@ class Session:
         channels, value = {
             "combined": (4, 0.25),
             "indirect": (3, 0.125),
+            "shadow_catcher": (3, 0.5),
             "error": (1, 0.01),
             "audit": (1, 0.5),
         }[layer]

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 import pytest
 
+from rgp_engine.export.visibility import ALL, CAMERA, CATCHER
 from tests.blender import build
 
 has_exposure = pytest.mark.skipif(
@@ -38,7 +39,13 @@ def test_point(scene, lamp):
     assert record["shape"] == {"kind": "point", "radius": pytest.approx(0.3), "soft_falloff": False}
     assert np.array(record["world_from_lamp"])[:3, 3] == pytest.approx([0, 0, 3])
     assert record["casts_shadow"] is True
-    assert record["visibility"] == 30, "hidden from the camera, as Blender makes new lights"
+    expected = ALL - CAMERA | CATCHER
+    assert record["visibility"] == expected, "hidden from the camera, as Blender makes new lights"
+
+
+def test_a_lamp_that_belongs_to_the_objects_on_a_shadow_catcher(scene, lamp):
+    build.add_light("POINT").is_shadow_catcher = False
+    assert lamp()["visibility"] == ALL - CAMERA
 
 
 def test_spot(scene, lamp):

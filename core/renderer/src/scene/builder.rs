@@ -120,7 +120,7 @@ impl SceneBuilder {
             world_from_object: transform,
             steps: Vec::new(),
             materials,
-            visibility: visible_to & (visibility::ALL | visibility::HOLDOUT),
+            visibility: visible_to & (visibility::ALL | visibility::HOLDOUT | visibility::CATCHER),
             info: ObjectInfo::default(),
             links: ObjectLinks::default(),
         });

@@ -26,6 +26,9 @@ pub mod visibility {
     pub const LAMP: u32 = 32;
     /// No kind of ray: camera rays see a hole in the picture where the object is.
     pub const HOLDOUT: u32 = 64;
+    /// No kind of ray: the camera sees what is missing of the object's light, and lamps that have it are there without
+    /// the other objects too.
+    pub const CATCHER: u32 = 1 << 31;
     /// Everything a mesh object may be seen by.
     pub const ALL: u32 = CAMERA | DIFFUSE | GLOSSY | TRANSMISSION | SHADOW;
     /// Sets of objects that only some lights are blocked by.
