@@ -14,6 +14,7 @@ from pathlib import Path
 
 from tools.environment import (
     CORE,
+    SPACE_OF_TESTS,
     VENVS,
     build_core,
     embree_library,
@@ -22,7 +23,17 @@ from tools.environment import (
     make_tools,
     python_of,
 )
-from tools.machine import PYTHON_OF_BPY, ROOT, Command, available_bpys, check_compiler, require, run, say
+from tools.machine import (
+    PYTHON_OF_BPY,
+    ROOT,
+    Command,
+    available_bpys,
+    check_compiler,
+    check_space,
+    require,
+    run,
+    say,
+)
 
 OUT = ROOT / "out"
 ALLOWLIST = ROOT / "tools/stubtest_allowlist.txt"
@@ -43,6 +54,7 @@ def test(options: argparse.Namespace) -> None:
     bpys = available_bpys(options.bpy)
     for bpy in bpys:
         make_blender(bpy)
+    check_space(ROOT, SPACE_OF_TESTS, "building the tests")
     failed = []
     embree = str(embree_library(f"bpy-{bpys[-1]}"))
     cargo = ["cargo", "test", "--workspace", "--locked", "--no-fail-fast"]

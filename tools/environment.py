@@ -14,6 +14,7 @@ from tools.machine import (
     available_bpys,
     check_compiler,
     check_libraries,
+    check_space,
     check_venv,
     interpreter,
     require,
@@ -23,6 +24,11 @@ from tools.machine import (
 VENVS = ROOT / ".venv"
 WHEELS = VENVS / "wheels"
 CORE = ROOT / "core"
+
+# Gigabytes; what a fresh clone was seen to take, rounded up.
+SPACE_OF_ENVIRONMENT = 1.5
+SPACE_OF_BUILD = 0.5
+SPACE_OF_TESTS = 2.5
 
 
 def python_of(name: str) -> Path:
@@ -46,6 +52,7 @@ def make_environment(name: str, python_version: str) -> Path:
     python = interpreter(python_version)
     assert python is not None, "callers ask for a version that available_bpys found"
     check_venv(python, python_version)
+    check_space(ROOT, SPACE_OF_ENVIRONMENT, f"making .venv/{name}")
     say(f"making .venv/{name} with Python {python_version}")
     require([python, "-m", "venv", "--clear", VENVS / name])
     pip_install(name, "--only-binary=:all:", "--require-hashes", "-r", lock)
@@ -102,6 +109,7 @@ def build_core() -> Path:
     if built:
         return built[0]
     check_compiler()
+    check_space(ROOT, SPACE_OF_BUILD, "building the core")
     tools = make_tools()
     say("building the core")
     shutil.rmtree(WHEELS, ignore_errors=True)

@@ -68,6 +68,13 @@ def require(command: Command, directory: Path = ROOT, **variables: str) -> None:
         sys.exit(code)
 
 
+def check_space(folder: Path, gigabytes: float, purpose: str) -> None:
+    """Ends the command while that is cheap when the disk is too full; a full one fails late and in odd places."""
+    free = shutil.disk_usage(folder).free / 1e9
+    if free < gigabytes:
+        fail(f"{purpose} takes about {gigabytes:.1f} GB, and {free:.1f} GB are free on the disk of {folder}")
+
+
 def interpreter(version: str) -> Path | None:
     """A Python of that version (such as "3.11") that really runs, or None. A pyenv shim may be there and not run."""
     candidates = [sys.executable]

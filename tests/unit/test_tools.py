@@ -56,6 +56,14 @@ def test_without_a_fitting_python_the_message_names_those_that_fit(monkeypatch: 
         machine.available_bpys("3.6")
 
 
+def test_a_disk_too_full_is_told_with_what_is_needed(tmp_path: Path) -> None:
+    machine.check_space(tmp_path, 1e-6, "a byte")
+    with pytest.raises(
+        SystemExit, match=r"making much takes about 1000000000\.0 GB, and [0-9.]+ GB are free"
+    ):
+        machine.check_space(tmp_path, 1e9, "making much")
+
+
 def test_the_blenders_of_one_python_come_oldest_first(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(machine, "interpreter", lambda version: Path("python") if version == "3.11" else None)
     assert machine.available_bpys() == ["4.2.23", "4.5.15", "5.0.1"]

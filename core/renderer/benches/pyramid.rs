@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::math::Side;
 use rgp_renderer::pyramid::{
-    Accumulator, Deposit, Grid, Layout, NormalClasses, Pyramid, SidePoint, SurfaceTriangle, Surroundings,
-    TOGETHER,
+    Accumulator, Deposit, Grid, Layout, NormalClasses, Openness, Pyramid, SidePoint, SurfaceTriangle,
+    Surroundings, TOGETHER,
 };
 
 const RESOLUTION: u32 = 128;
@@ -93,8 +93,12 @@ impl Surroundings for Room {
         SurfaceTriangle { corners: [a, b, c], normal, glossy: false }
     }
 
-    fn open(&self, points: &[SidePoint]) -> Vec<bool> {
-        vec![true; points.len()]
+    fn openness(&self, points: &[SidePoint]) -> Vec<Openness> {
+        vec![Openness { is_open: true, above: None }; points.len()]
+    }
+
+    fn leads_out(&self, _: &SidePoint) -> bool {
+        true
     }
 
     fn sees(&self, _: Vec3, _: Vec3) -> bool {

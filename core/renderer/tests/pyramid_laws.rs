@@ -5,7 +5,8 @@ use glam::{DQuat, DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::math::Side;
 use rgp_renderer::pyramid::{
-    Accumulator, Deposit, Grid, Layout, NormalClasses, Pyramid, SidePoint, SurfaceTriangle, Surroundings,
+    Accumulator, Deposit, Grid, Layout, NormalClasses, Openness, Pyramid, SidePoint, SurfaceTriangle,
+    Surroundings,
 };
 
 /// All of a square sees all of it.
@@ -38,8 +39,12 @@ impl Surroundings for Square {
         SurfaceTriangle { corners, normal: normal(corners), glossy: false }
     }
 
-    fn open(&self, points: &[SidePoint]) -> Vec<bool> {
-        vec![true; points.len()]
+    fn openness(&self, points: &[SidePoint]) -> Vec<Openness> {
+        vec![Openness { is_open: true, above: None }; points.len()]
+    }
+
+    fn leads_out(&self, _: &SidePoint) -> bool {
+        true
     }
 
     fn sees(&self, _: Vec3, _: Vec3) -> bool {

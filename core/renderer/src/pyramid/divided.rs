@@ -37,10 +37,10 @@ pub(super) fn is_part_divided(
         return false;
     }
     let points: Vec<SidePoint> = corners.iter().map(|&p| SidePoint { p, side, cell_size }).collect();
-    let open = scene.open(&points);
+    let openness = scene.openness(&points);
     let (mut groups, mut is_open) = (0, false);
     for i in (0..corners.len()).map(|i| (first + 1 + i) % corners.len()) {
-        is_open |= open[i];
+        is_open |= openness[i].is_open;
         if blocked[i] {
             groups += u32::from(is_open);
             is_open = false;

@@ -273,16 +273,43 @@ impl<S: Surroundings> Pending<'_, S> {
 
     /// Asks about the points that wait.
     fn ask(&mut self) {
-        let open = self.scene.open(&self.points);
+        let openness = self.scene.openness(&self.points);
         let grid = &self.layout.grid;
-        for ((asked, point), open) in self.asked.drain(..).zip(self.points.drain(..)).zip(open) {
+        // Two surfaces that face each other: the far side of one, where it shares a cell with the near side of the other, and
+        // what lies between them.
+        let (mut far, mut shared) = (Vec::new(), Vec::new());
+        for ((asked, point), found) in self.asked.drain(..).zip(self.points.drain(..)).zip(openness) {
             let Asked { level, place, area, in_company } = asked;
-            self.sums[level][place].add_answer(area, open);
-            if open && in_company {
-                let level_box = &grid.levels[level];
-                let cell = level_box.lattice(self.layout.levels[level].keys[place].cell(level_box).0);
+            self.sums[level][place].add_answer(area, found.is_open);
+            let level_box = &grid.levels[level];
+            let cell = || self.layout.levels[level].keys[place].cell(level_box).0;
+            if found.is_open && in_company {
+                let cell = level_box.lattice(cell());
                 let inside = grid.offset(point.p) / level_box.cell_size - cell.as_vec3();
                 self.sums[level][place].add_open_point(inside, point.side.normal);
+            }
+            let Some((p, side)) = found.above else { continue };
+            let cell = cell();
+            if level_box.cell(grid.offset(p)) != Some(cell) {
+                continue;
+            }
+            let above = SidePoint { p, side, ..point };
+            let between = SidePoint { p: 0.5 * (point.p + p), ..point };
+            let below = SidePoint { side: point.side.other(), ..point };
+            for (near, far_side) in [(point.side, above), (side.other(), below)] {
+                let class = self.layout.classes.of(near);
+                if class == self.layout.classes.of(far_side.side)
+                    && let Some(place) = self.layout.levels[level].index.find(cell, class)
+                {
+                    far.push(far_side);
+                    shared.push((level, place, between));
+                }
+            }
+        }
+        // Where light comes to both it is not the same.
+        for (found, (level, place, between)) in self.scene.openness(&far).into_iter().zip(shared) {
+            if found.is_open && self.scene.leads_out(&between) {
+                self.sums[level][place].divide();
             }
         }
     }

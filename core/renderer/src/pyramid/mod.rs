@@ -70,6 +70,15 @@ pub struct SidePoint {
     pub cell_size: f32,
 }
 
+/// What is found about a [`SidePoint`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Openness {
+    /// Whether light can come to the point.
+    pub is_open: bool,
+    /// Less than a cell straight above the point, the other side of the surface there.
+    pub above: Option<(Vec3, Side)>,
+}
+
 /// What a pyramid is made around.
 pub trait Surroundings: Sync {
     /// Number of triangles whose light is read.
@@ -78,8 +87,11 @@ pub trait Surroundings: Sync {
     /// One of them.
     fn triangle(&self, i: usize) -> SurfaceTriangle;
 
-    /// Tells of points, in order, whether light can come to them.
-    fn open(&self, points: &[SidePoint]) -> Vec<bool>;
+    /// Tells of points, in order, whether light can come to them and what is above them.
+    fn openness(&self, points: &[SidePoint]) -> Vec<Openness>;
+
+    /// Whether a ray along the surface, to one of four sides, gets away from a point.
+    fn leads_out(&self, point: &SidePoint) -> bool;
 
     /// Whether two points see each other.
     fn sees(&self, p: Vec3, q: Vec3) -> bool;

@@ -345,7 +345,7 @@ fn counted([mut open, mut hidden, unknown]: [CellSurface; 3]) -> (CellSurface, S
 mod tests {
     use super::*;
     use crate::math::Side;
-    use crate::pyramid::{Grid, NormalClasses, SidePoint, SurfaceTriangle};
+    use crate::pyramid::{Grid, NormalClasses, Openness, SidePoint, SurfaceTriangle};
 
     /// Triangles in a place of their own, where `is_open` tells which points light can come to.
     struct Scene<F> {
@@ -362,8 +362,13 @@ mod tests {
             self.triangles[i]
         }
 
-        fn open(&self, points: &[SidePoint]) -> Vec<bool> {
-            points.iter().map(&self.is_open).collect()
+        fn openness(&self, points: &[SidePoint]) -> Vec<Openness> {
+            let found = |point: &SidePoint| Openness { is_open: (self.is_open)(point), above: None };
+            points.iter().map(found).collect()
+        }
+
+        fn leads_out(&self, _: &SidePoint) -> bool {
+            true
         }
 
         fn sees(&self, _: Vec3, _: Vec3) -> bool {

@@ -8,7 +8,7 @@ use crate::bsdf::LobeSet;
 use crate::lit_scene::LitScene;
 use crate::math::{Frame, Side};
 use crate::progress::Progress;
-use crate::pyramid::{SidePoint, SurfaceTriangle, Surroundings};
+use crate::pyramid::{Openness, SidePoint, SurfaceTriangle, Surroundings};
 use crate::scene::{MIDDLE, visibility};
 
 /// How far inside a solid a surface is known to be hidden (cells).
@@ -45,11 +45,12 @@ impl<'a> SceneSurroundings<'a> {
         Self { lit, triangles, progress }
     }
 
-    /// Whether a ray from the point brings no light.
-    fn ends(&self, point: &SidePoint, direction: Vec3, hit: &Hit) -> bool {
+    /// The side of a surface that a ray from the point meets, where it brings no light for that.
+    fn end(&self, point: &SidePoint, ray: &Ray, hit: &Hit) -> Option<Side> {
         let (ng, material) = self.lit.accel.triangle(hit.object, hit.primitive);
-        let from_inside = Side::met(ng, direction).back != point.side.back;
-        (from_inside || hit.t < point.cell_size) && self.lit.materials[material].is_opaque()
+        let met = Side::met(ng, ray.direction);
+        let from_inside = met.back != point.side.back;
+        ((from_inside || hit.t < point.cell_size) && self.lit.materials[material].is_opaque()).then_some(met)
     }
 }
 
@@ -69,16 +70,17 @@ impl Surroundings for SceneSurroundings<'_> {
         }
     }
 
-    /// Whether a ray straight up, or one of four leaning ones, meets nothing opaque within a cell, and does not meet a surface
-    /// from inside soon after. From a front one sees fronts, and from a back backs, unless the point lies inside another solid.
-    fn open(&self, points: &[SidePoint]) -> Vec<bool> {
-        let mut open = vec![false; points.len()];
+    /// Open is where a ray straight up, or one of four leaning ones, meets nothing opaque within a cell, and does not meet a
+    /// surface from inside soon after. From a front one sees fronts, and from a back backs, unless the point lies inside
+    /// another solid.
+    fn openness(&self, points: &[SidePoint]) -> Vec<Openness> {
+        let mut openness = vec![Openness::default(); points.len()];
         // Neighbours on one side look the same way: their rays stay together.
         let (mut asked, backs): (Vec<usize>, Vec<usize>) =
             (0..points.len()).partition(|&i| !points[i].side.back);
         asked.extend(backs);
         let mut packet = Packet::default();
-        for direction in DIRECTIONS {
+        for (number, direction) in DIRECTIONS.into_iter().enumerate() {
             let mut ended = Vec::new();
             for sixteen in asked.chunks(LANES) {
                 packet.clear();
@@ -90,17 +92,34 @@ impl Surroundings for SceneSurroundings<'_> {
                 }
                 self.lit.accel.intersect_packet(&mut packet);
                 for (lane, &i) in sixteen.iter().enumerate() {
-                    let hit = packet.hit(lane);
-                    if hit.is_some_and(|hit| self.ends(&points[i], packet.ray(lane).direction, &hit)) {
-                        ended.push(i);
-                    } else {
-                        open[i] = true;
+                    let ray = packet.ray(lane);
+                    let end = packet.hit(lane).and_then(|hit| Some((hit, self.end(&points[i], &ray, &hit)?)));
+                    let Some((hit, met)) = end else {
+                        openness[i].is_open = true;
+                        continue;
+                    };
+                    ended.push(i);
+                    if number == 0 && hit.t < points[i].cell_size {
+                        openness[i].above = Some((ray.origin + hit.t * ray.direction, met.other()));
                     }
                 }
             }
             asked = ended;
         }
-        open
+        openness
+    }
+
+    fn leads_out(&self, point: &SidePoint) -> bool {
+        let SidePoint { p, side, .. } = *point;
+        let frame = Frame::new(side.normal);
+        let mut packet = Packet::default();
+        for (lane, direction) in [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Y].into_iter().enumerate() {
+            let ray = Ray::leaving(p, side.normal, frame.from_local(direction), visibility::DIFFUSE, MIDDLE);
+            packet.set(lane, &ray, f32::INFINITY);
+        }
+        self.lit.accel.intersect_packet(&mut packet);
+        (0..4)
+            .any(|lane| packet.hit(lane).is_none_or(|hit| self.end(point, &packet.ray(lane), &hit).is_none()))
     }
 
     fn sees(&self, p: Vec3, q: Vec3) -> bool {
