@@ -5,6 +5,7 @@ use std::f32::consts::{FRAC_1_PI, FRAC_PI_4, PI};
 use glam::{Vec2, Vec3};
 
 use super::cluster::Bounds;
+use super::outline::Outline;
 use super::proxy::Hull;
 use super::spherical_rectangle::SphericalRectangle;
 use super::spread::Spread;
@@ -104,15 +105,19 @@ impl AreaLamp {
         }
     }
 
-    /// About the irradiance at `p`, for choosing between lights; 0 only where there is none.
-    pub(super) fn irradiance_estimate(&self, p: Vec3) -> f32 {
-        let (foot, height) = self.local(p);
-        if height <= 0.0 || !self.is_reached(foot, height) {
-            return 0.0;
+    /// What the choice among lamps looks at; it lights these sets of objects.
+    pub(super) fn outline(&self, receivers: u32) -> Outline {
+        Outline {
+            center: self.center,
+            x_axis: self.x_axis,
+            y_axis: self.y_axis,
+            normal: self.normal,
+            half: self.half,
+            reach: self.spread.reach(),
+            intensity: self.power.mean() * FRAC_1_PI * self.spread.peak(),
+            area: self.area,
+            receivers,
         }
-        let nearest = (foot.abs() - self.half).max(Vec2::ZERO);
-        let distance_squared = nearest.length_squared() + height * height;
-        self.power.mean() * FRAC_1_PI * self.spread.peak() / (distance_squared + self.area * FRAC_1_PI)
     }
 
     /// A point of the lamp as seen from `p`.
@@ -208,12 +213,6 @@ impl AreaLamp {
     fn contains(&self, place: Vec2) -> bool {
         let unit = place / self.half;
         if self.round { unit.length_squared() <= 1.0 } else { unit.abs().max_element() <= 1.0 }
-    }
-
-    /// True where light can come from the lamp to a point at `foot` and `height`.
-    fn is_reached(&self, foot: Vec2, height: f32) -> bool {
-        let reach = self.spread.reach() * height;
-        ((foot.abs() - self.half).max(Vec2::ZERO)).max_element() <= reach
     }
 
     /// Radiance towards a point at `height` from the lamp's point `offset` away from its foot.

@@ -168,10 +168,13 @@ impl Cluster {
         if self.receivers & receiver.sets == 0 {
             return 0.0;
         }
-        match (receiver.normal, self.seen_from(receiver.p)) {
-            (Some(normal), Some((towards, _, angle))) => cos_less(normal.dot(towards), angle).max(0.0),
-            _ => 1.0,
+        let Some(normal) = receiver.normal else { return 1.0 };
+        if self.distant {
+            let seen = self.seen_from(receiver.p);
+            return seen.map_or(1.0, |(towards, _, angle)| cos_less(normal.dot(towards), angle).max(0.0));
         }
+        let to = self.center - receiver.p;
+        incidence_of_ball(normal.dot(to), to.length_squared(), self.radius)
     }
 
     /// Unit vector to the center, squared distance, and sine and cosine of the angle the ball fills about it. `None` where
@@ -194,8 +197,20 @@ impl Cluster {
     }
 }
 
+/// The highest cosine with a surface's normal of a direction from there to a ball, at least 0. The ball's center lies `height`
+/// above the surface's plane.
+#[inline(always)]
+pub(super) fn incidence_of_ball(height: f32, distance_squared: f32, radius: f32) -> f32 {
+    let tangent_squared = distance_squared - radius * radius;
+    let beside = (distance_squared - height * height).max(0.0).sqrt();
+    // As `cos_less` of the angles.
+    let partly = (height * tangent_squared.max(0.0).sqrt() + beside * radius) / distance_squared;
+    let holds_normal = (tangent_squared <= 0.0) | ((height > 0.0) & (height * height >= tangent_squared));
+    if holds_normal { 1.0 } else { partly.max(0.0) }
+}
+
 /// Cosine of an angle less another, at least 0: cos(max(a − b, 0)) from cos a, sin b and cos b.
-fn cos_less(cos_a: f32, [sin_b, cos_b]: [f32; 2]) -> f32 {
+pub(super) fn cos_less(cos_a: f32, [sin_b, cos_b]: [f32; 2]) -> f32 {
     if cos_a >= cos_b {
         return 1.0;
     }

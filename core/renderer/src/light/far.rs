@@ -32,7 +32,7 @@ impl Lights {
         // Half of what comes from all sides is above the surface, and that at a mean cosine of a half.
         let of_world = 0.25 * environment.fluence().mean();
         let share = of_world
-            / (of_world + self.tree.irradiance(receiver, |index| self.irradiance_estimate(receiver, index)));
+            / (of_world + self.tree.irradiance(receiver, |emitters| self.irradiances(receiver, emitters)));
         if share.is_finite() { share.clamp(BOUNDS[0], BOUNDS[1]) } else { 0.5 }
     }
 

@@ -15,6 +15,7 @@ mod emitter;
 mod environment;
 mod far;
 mod met;
+mod outline;
 mod point;
 mod proxy;
 mod select;
@@ -43,10 +44,11 @@ use distant::SceneBall;
 pub use emitter::EmitterPoint;
 use emitter::MeshEmitter;
 pub use environment::Environment;
+use outline::Outlines;
 pub use proxy::LampProxy;
 use select::{Cdf, Choice};
 use shape::{Light, Shape};
-use tree::Tree;
+use tree::{FEW, Tree, Weights};
 use world::WorldLight;
 
 /// Lengths and distances from the scene's middle beyond this (scene units, the scene filling a unit cube) are a mistake:
@@ -184,6 +186,8 @@ pub struct Lights {
     first_emitter: Vec<usize>,
     /// Over `emitters`: the choice of direct light.
     tree: Tree,
+    /// The area lamps of a few emitters.
+    outlines: Option<Box<Outlines>>,
     /// Indices of suns that rays can meet.
     suns: Vec<usize>,
     /// Index into `lights` of each object that emits.
@@ -252,9 +256,15 @@ impl Lights {
                 bounds.push(bounds_of_one);
             }
         }
+        let outline = |emitter: &Emitter| match &lights[emitter.light as usize] {
+            Light { shape: Shape::Area(lamp), receivers, .. } => Some(lamp.outline(*receivers)),
+            _ => None,
+        };
+        let outlines = (emitters.len() <= FEW).then(|| Box::new(Outlines::new(emitters.iter().map(outline))));
         let is_sun = |light: &Light| matches!(light.shape, Shape::Sun(_)) && light.can_be_met();
         Self {
             tree: Tree::build(&bounds),
+            outlines,
             emitters,
             first_emitter,
             suns: (0..lights.len()).filter(|&index| is_sun(&lights[index])).collect(),
@@ -417,7 +427,7 @@ impl Lights {
         if self.emitters.len() == 1 {
             return Some(Choice { index: 0, probability: 1.0, rest: u });
         }
-        self.tree.choose(receiver, u, |index| self.irradiance_estimate(receiver, index))
+        self.tree.choose(receiver, u, |emitters| self.irradiances(receiver, emitters))
     }
 
     /// Probability with which [`Lights::sample_direct`] chooses an emitter.
@@ -425,18 +435,30 @@ impl Lights {
         let among_emitters = if self.emitters.len() == 1 {
             1.0
         } else {
-            self.tree.probability(receiver, index, |index| self.irradiance_estimate(receiver, index))
+            self.tree.probability(receiver, index, |emitters| self.irradiances(receiver, emitters))
         };
         among_emitters * (1.0 - self.world_share(receiver))
     }
 
-    /// About the irradiance an emitter gives the receiver; 0 only where there is none.
-    fn irradiance_estimate(&self, receiver: &Receiver, index: usize) -> f32 {
-        let emitter = &self.emitters[index];
-        match &self.lights[emitter.light as usize].shape {
-            Shape::Point(lamp) => lamp.irradiance_estimate(receiver.p) * emitter.cluster.incidence(receiver),
-            Shape::Area(lamp) => lamp.irradiance_estimate(receiver.p) * emitter.cluster.incidence(receiver),
-            Shape::Sun(_) | Shape::Mesh(_) => emitter.cluster.irradiance(receiver),
+    /// About the irradiance that each of some emitters gives the receiver; 0 only where there is none.
+    fn irradiances(&self, receiver: &Receiver, emitters: &[u32]) -> Weights {
+        let Some(outlines) = &self.outlines else {
+            return emitters.iter().map(|&index| self.irradiance(receiver, index as usize)).collect();
+        };
+        let mut irradiances = outlines.irradiance(receiver);
+        for &index in &outlines.others {
+            irradiances[index] = self.irradiance(receiver, index);
+        }
+        emitters.iter().map(|&index| irradiances[index as usize]).collect()
+    }
+
+    fn irradiance(&self, receiver: &Receiver, index: usize) -> f32 {
+        let Emitter { light, cluster, .. } = &self.emitters[index];
+        let light = &self.lights[*light as usize];
+        match &light.shape {
+            Shape::Point(lamp) => lamp.irradiance_estimate(receiver.p) * cluster.incidence(receiver),
+            Shape::Area(lamp) => lamp.outline(light.receivers).irradiance(receiver),
+            Shape::Sun(_) | Shape::Mesh(_) => cluster.irradiance(receiver),
         }
     }
 }

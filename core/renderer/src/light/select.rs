@@ -51,9 +51,8 @@ impl Cdf {
 
     /// As [`Cdf::new`], with a tenth spread evenly over the entries of positive weight.
     pub(super) fn with_even_share(weights: &[f64]) -> Option<Self> {
-        let total: f64 = weights.iter().sum();
-        let positive = weights.iter().filter(|w| **w > 0.0).count().max(1) as f64;
-        Self::new(weights.iter().map(|&weight| mixed(weight, total, positive)))
+        let shares = Shares::of(weights.iter().copied())?;
+        Self::new(weights.iter().map(|&weight| shares.probability(weight)))
     }
 
     /// The entry `u` in 0..1 falls into.
@@ -69,11 +68,11 @@ impl Cdf {
 
 /// Chooses among a few weights that were made on the spot, with the even share mixed in.
 pub(super) fn choose(weights: &[f32], u: f32) -> Option<Choice> {
-    let (total, positive) = totals(weights)?;
+    let shares = Shares::of(weights.iter().map(|&weight| f64::from(weight)))?;
     let mut left = f64::from(u).clamp(0.0, 1.0 - f64::EPSILON);
     let mut chosen = None;
     for (index, &weight) in weights.iter().enumerate() {
-        let probability = mixed(f64::from(weight), total, positive);
+        let probability = shares.probability(f64::from(weight));
         if probability <= 0.0 {
             continue;
         }
@@ -93,18 +92,31 @@ pub(super) fn choose(weights: &[f32], u: f32) -> Option<Choice> {
 
 /// Probability with which [`choose`] returns `index`.
 pub(super) fn probability(weights: &[f32], index: usize) -> f32 {
-    totals(weights).map_or(0.0, |(total, positive)| mixed(f64::from(weights[index]), total, positive) as f32)
+    let shares = Shares::of(weights.iter().map(|&weight| f64::from(weight)));
+    shares.map_or(0.0, |shares| shares.probability(f64::from(weights[index])) as f32)
 }
 
-/// Sum of the weights and number of positive ones; `None` if there is nothing to choose from.
-fn totals(weights: &[f32]) -> Option<(f64, f64)> {
-    let total: f64 = weights.iter().map(|&w| f64::from(w)).sum();
-    let positive = weights.iter().filter(|w| **w > 0.0).count();
-    (total > 0.0 && total.is_finite()).then_some((total, positive as f64))
+/// From weights to probabilities.
+struct Shares {
+    per_weight: f64,
+    even: f64,
 }
 
-fn mixed(weight: f64, total: f64, positive: f64) -> f64 {
-    if weight > 0.0 { (1.0 - EVEN_SHARE) * weight / total + EVEN_SHARE / positive } else { 0.0 }
+impl Shares {
+    /// `None` if there is nothing to choose from.
+    fn of(weights: impl Iterator<Item = f64>) -> Option<Self> {
+        let (mut total, mut positive) = (0.0, 0.0);
+        for weight in weights {
+            total += weight;
+            positive += f64::from(u8::from(weight > 0.0));
+        }
+        (total >= f64::MIN_POSITIVE && total.is_finite())
+            .then(|| Self { per_weight: (1.0 - EVEN_SHARE) / total, even: EVEN_SHARE / positive })
+    }
+
+    fn probability(&self, weight: f64) -> f64 {
+        if weight > 0.0 { weight * self.per_weight + self.even } else { 0.0 }
+    }
 }
 
 /// Keeps a rescaled random number below 1 once it is f32.

@@ -8,12 +8,16 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{Vec2, Vec3};
 
+use super::cluster::cos_less;
 use super::warp;
 use crate::math::Frame;
 use crate::scene::Lamp;
 
 /// Cones stretched further than this, or to less than its inverse, count as stretched this far.
 const LARGEST_STRETCH: f32 = 1e4;
+
+/// Directions this far outside a cone (rad) may still count as inside, in f32.
+const ROUNDING: f32 = 1e-3;
 
 /// Steps around a quarter of a stretched cone and across it that its solid angle is summed over.
 const STEPS: [u16; 2] = [64, 64];
@@ -27,6 +31,8 @@ pub(super) struct SpotCone {
     /// Share of the cone, in 1 − cos, over which the light fades.
     blend: f32,
     stretched: Option<Stretched>,
+    /// Cosine of an angle just outside the round cone that holds it.
+    cos_outside: f32,
 }
 
 /// What an elliptic cone has beside the round one it is stretched from.
@@ -47,7 +53,8 @@ impl SpotCone {
         let edge = 2.0 * quarter * quarter;
         let axis = lamp.axis.try_normalize()?;
         let blend = if blend > 0.0 { blend.min(1.0) } else { 0.0 };
-        let mut cone = (edge > 0.0).then_some(Self { axis, edge, blend, stretched: None })?;
+        let mut cone =
+            (edge > 0.0).then_some(Self { axis, edge, blend, stretched: None, cos_outside: -1.0 })?;
         let [x, y] = lamp.stretch.map(|by| by.clamp(LARGEST_STRETCH.recip(), LARGEST_STRETCH));
         if (x - 1.0).abs().max((y - 1.0).abs()) > 1e-5 {
             let tangent = lamp.x_axis.reject_from_normalized(axis).try_normalize()?;
@@ -57,6 +64,7 @@ impl SpotCone {
             stretched.solid_angle = cone.summed_solid_angle();
             cone.stretched = Some(stretched);
         }
+        cone.cos_outside = (cone.half_angle() + ROUNDING).min(PI).cos();
         Some(cone)
     }
 
@@ -163,8 +171,8 @@ impl SpotCone {
         if distance <= radius * 1.001 {
             return true;
         }
-        let angle = (self.axis.dot(offset) / distance).clamp(-1.0, 1.0).acos();
-        angle <= self.half_angle() + (radius / distance).asin() + 1e-3
+        let sin = radius / distance;
+        cos_less(self.axis.dot(offset) / distance, [sin, (1.0 - sin * sin).sqrt()]) >= self.cos_outside
     }
 }
 

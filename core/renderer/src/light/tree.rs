@@ -14,10 +14,13 @@ use super::select::{self, Choice};
 const LEAF: usize = 8;
 
 /// Up to this many emitters, all are weighed at the point: the tree is one leaf.
-const FEW: usize = 64;
+pub(super) const FEW: usize = 64;
 
 /// Places along an axis at which a cluster may be split.
 const BUCKETS: usize = 16;
+
+/// Of the emitters of a leaf, in its order.
+pub(super) type Weights = ArrayVec<f32, FEW>;
 
 /// A tree over emitters. They are named by their index in the list it was built from.
 #[derive(Debug, Default)]
@@ -59,13 +62,13 @@ impl Tree {
         Self { nodes, order, place }
     }
 
-    /// About the irradiance all emitters together give the receiver; `weigh` says it of one emitter.
-    pub(super) fn irradiance(&self, receiver: &Receiver, weigh: impl Fn(usize) -> f32) -> f32 {
+    /// About the irradiance all emitters together give the receiver; `weigh` says it of each emitter of a leaf.
+    pub(super) fn irradiance(&self, receiver: &Receiver, weigh: impl Fn(&[u32]) -> Weights) -> f32 {
         match self.children(0) {
             Some(children) => {
                 children.map(|child| self.nodes[child].cluster.irradiance(receiver)).iter().sum()
             }
-            None => self.order.iter().map(|&index| weigh(index as usize)).sum(),
+            None => weigh(&self.order).iter().sum(),
         }
     }
 
@@ -74,13 +77,13 @@ impl Tree {
         self.nodes.len() * size_of::<Node>() + (self.order.len() + self.place.len()) * size_of::<u32>()
     }
 
-    /// The emitter that `u` in 0..1 chooses; `weigh` says about what irradiance an emitter gives the receiver. `None` where
-    /// none gives any.
+    /// The emitter that `u` in 0..1 chooses; `weigh` says about what irradiance each emitter of a leaf gives the receiver.
+    /// `None` where none gives any.
     pub(super) fn choose(
         &self,
         receiver: &Receiver,
         mut u: f32,
-        weigh: impl Fn(usize) -> f32,
+        weigh: impl Fn(&[u32]) -> Weights,
     ) -> Option<Choice> {
         let (mut at, mut probability) = (0, 1.0);
         while let Some([first, second]) = self.children(at) {
@@ -93,13 +96,18 @@ impl Tree {
             u = u.min(select::BELOW_ONE);
         }
         let range = self.nodes.get(at)?.range();
-        let chosen = select::choose(&self.weights(range.clone(), weigh), u)?;
+        let chosen = select::choose(&weigh(&self.order[range.clone()]), u)?;
         let index = self.order[range.start + chosen.index] as usize;
         Some(Choice { index, probability: probability * chosen.probability, rest: chosen.rest })
     }
 
     /// Probability with which [`Tree::choose`] chooses emitter `index`.
-    pub(super) fn probability(&self, receiver: &Receiver, index: usize, weigh: impl Fn(usize) -> f32) -> f32 {
+    pub(super) fn probability(
+        &self,
+        receiver: &Receiver,
+        index: usize,
+        weigh: impl Fn(&[u32]) -> Weights,
+    ) -> f32 {
         let place = self.place[index] as usize;
         let (mut at, mut probability) = (0, 1.0);
         while let Some([first, second]) = self.children(at) {
@@ -111,7 +119,7 @@ impl Tree {
             }
         }
         let range = self.nodes[at].range();
-        probability * select::probability(&self.weights(range.clone(), weigh), place - range.start)
+        probability * select::probability(&weigh(&self.order[range.clone()]), place - range.start)
     }
 
     fn children(&self, at: usize) -> Option<[usize; 2]> {
@@ -123,10 +131,6 @@ impl Tree {
     fn share(&self, first: usize, second: usize, receiver: &Receiver) -> Option<f32> {
         let [a, b] = [first, second].map(|child| self.nodes[child].cluster.irradiance(receiver));
         (a + b > 0.0).then(|| a / (a + b))
-    }
-
-    fn weights(&self, range: Range<usize>, weigh: impl Fn(usize) -> f32) -> ArrayVec<f32, FEW> {
-        self.order[range].iter().map(|&index| weigh(index as usize)).collect()
     }
 }
 
