@@ -11,11 +11,16 @@ EXIT_CODE = pytest.StashKey[int]()
 @pytest.hookimpl(trylast=True)
 def pytest_unconfigure(config: pytest.Config) -> None:
     """Leaves at once, with pytest's own exit code, when Blender is loaded: bpy 4.5 may hang in its exit handlers."""
-    if "bpy" not in sys.modules or EXIT_CODE not in config.stash:
+    if "bpy" not in sys.modules:
         return
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(config.stash[EXIT_CODE])
+    code = config.stash.get(EXIT_CODE, int(pytest.ExitCode.INTERNAL_ERROR))
+    try:
+        sys.stdout.flush()
+        sys.stderr.flush()
+    except OSError:
+        code = code or int(pytest.ExitCode.INTERNAL_ERROR)  # a full disk: nobody could be told
+    finally:
+        os._exit(code)
 
 
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:

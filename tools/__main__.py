@@ -34,9 +34,12 @@ from tools.machine import (
     run,
     say,
 )
+from tools.memcheck import check_memory
 
 OUT = ROOT / "out"
 ALLOWLIST = ROOT / "tools/stubtest_allowlist.txt"
+PATIENT = ("-o", "faulthandler_timeout=7200")
+"""Tests that make a hundred million photons, or three thousand renders, do not hang."""
 
 
 def render(options: argparse.Namespace) -> None:
@@ -73,17 +76,21 @@ def test(options: argparse.Namespace) -> None:
 def hard(options: argparse.Namespace) -> None:
     """Every hard case with the edge it breaks at, into docs/stability.md and docs/stability.json."""
     python = make_blender(available_bpys(options.bpy)[-1])
-    pytest = [python, "-m", "pytest", "tests/hard", *options.more]
+    pytest = [python, "-m", "pytest", "tests/hard", *PATIENT, *options.more]
     if timed("hard cases", pytest, ROOT, RGP_STABILITY=str(ROOT / "docs")):
         sys.exit("error: a hard case failed; docs/stability.md says which")
 
 
 def fuzz(options: argparse.Namespace) -> None:
-    """Random input through the scene builder, records, settings, textures and the node compiler."""
-    python = make_blender(available_bpys(options.bpy)[-1])
-    pytest = [python, "-m", "pytest", "tests/hard/test_hostile.py", *options.more]
+    """Random input through the scene builder, records, settings, textures and the node compiler; memory by valgrind."""
+    bpy = available_bpys(options.bpy)[-1]
+    python = make_blender(bpy)
+    is_sound = check_memory(embree_library(f"bpy-{bpy}"))
+    pytest = [python, "-m", "pytest", "tests/hard/test_hostile.py", *PATIENT, *options.more]
     if timed("hostile input", pytest, ROOT, RGP_EXAMPLES="3000"):
         sys.exit("error: some input was not met with a message")
+    if not is_sound:
+        sys.exit("error: the Embree crate's tests touch memory that is not theirs, or fail under valgrind")
 
 
 def timed(name: str, command: Command, directory: Path, **variables: str) -> int:

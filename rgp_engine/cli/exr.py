@@ -34,6 +34,8 @@ def read_channels(path: Path) -> dict[str, Picture]:
             parts = [(part.name(), dict(part.channels)) for part in file.parts]
     except Exception as error:
         raise CommandError(f"{path} cannot be read as OpenEXR: {error}") from error
+    if not parts or not all(part_channels for _, part_channels in parts):
+        raise CommandError(f"{path} is not whole; the disk may have been full when it was written")
     channels = {}
     for part_name, part_channels in parts:
         for name, channel in part_channels.items():

@@ -63,9 +63,14 @@ class RGP_OT_measure_accuracy(Operator):
 
     def execute(self, context: Any) -> set[str]:
         """Saves a copy of the file and starts another Blender with it."""
-        folder = Path(tempfile.mkdtemp(prefix="rgp_accuracy_", dir=bpy.app.tempdir))
-        copy = folder / f"{Path(bpy.data.filepath).stem or 'untitled'}.blend"
-        bpy.ops.wm.save_as_mainfile(filepath=str(copy), copy=True, check_existing=False)
+        try:
+            folder = Path(tempfile.mkdtemp(prefix="rgp_accuracy_", dir=bpy.app.tempdir))
+            copy = folder / f"{Path(bpy.data.filepath).stem or 'untitled'}.blend"
+            bpy.ops.wm.save_as_mainfile(filepath=str(copy), copy=True, check_existing=False)
+        except (OSError, RuntimeError) as error:
+            reason = str(error).strip().removeprefix("Error: ")
+            self.report({"ERROR"}, f"The file cannot be copied to {bpy.app.tempdir}: {reason}")
+            return {"CANCELLED"}
         arguments = ["accuracy", str(copy), "-o", str(folder), "--until-stdin-ends"]
         arguments += ["--quick"] if self.is_quick else []
         try:

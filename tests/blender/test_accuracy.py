@@ -289,6 +289,16 @@ def test_errors_are_shown(measured, room):
     assert running.error in draw(panel.RGP_PT_accuracy, **context(room))
 
 
+def test_no_room_for_the_copy(room, monkeypatch, tmp_path):
+    """A full disk, or a folder that is gone, is one line in Blender's words."""
+    monkeypatch.setattr(background, "_last", None)
+    monkeypatch.setattr(accuracy.tempfile, "mkdtemp", lambda **_: str(tmp_path / "gone"))
+    with pytest.raises(RuntimeError, match=r"Error: The file cannot be copied to .+: .+") as error:
+        bpy.ops.rgp.measure_accuracy()
+    assert "Traceback" not in str(error.value)
+    assert background.last() is None
+
+
 def test_command_lines(monkeypatch):
     assert accuracy.command_line(["a"]) == [sys.executable, "-m", "rgp_engine", "a"]
     app = SimpleNamespace(binary_path="/opt/blender", autoexec_fail=True)

@@ -53,11 +53,6 @@ def _page(record: Record) -> str:
 def _line(case: str, row: Row) -> str:
     mark = "" if row.passed else " **fails**"
     return (
-        f"| {case}{mark} | {row.expected:.6g} | {row.got:.6g} | {_share(row, row.deviation)} | "
-        f"{_share(row, row.bound)} |"
+        f"| {case}{mark} | {row.expected:.6g} | {row.got:.6g} | {row.share(row.deviation)} | "
+        f"{row.share(row.bound)} |"
     )
-
-
-def _share(row: Row, value: float) -> str:
-    """A relative deviation in percent, an absolute one as it is."""
-    return f"{100.0 * value:.3g} %" if row.expected else f"{value:.3g}"

@@ -28,6 +28,10 @@ class Row:
     def passed(self) -> bool:
         return math.isfinite(self.got) and self.deviation <= self.bound
 
+    def share(self, deviation: float) -> str:
+        """A relative deviation in percent, an absolute one as it is."""
+        return f"{100.0 * deviation:.3g} %" if self.expected else f"{deviation:.3g}"
+
     def as_json(self) -> dict[str, Any]:
         return {**asdict(self), "deviation": self.deviation, "pass": self.passed}
 
@@ -65,7 +69,7 @@ class Record:
         for value in dial:
             try:
                 found = deviation(value)
-                fault = "" if found <= bound else f"off by {100.0 * found:.3g} %"
+                fault = "" if found <= bound else f"off by {row.share(found)}"
             except Exception as error:  # noqa: BLE001 (a refusal is an edge too)
                 fault = f"refused: {error}"
             if fault:

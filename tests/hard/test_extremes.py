@@ -76,13 +76,15 @@ def test_photons_many(check):
 
 
 def hot_cell(photons: int) -> float:
-    """Indirect light far above the floor that a narrow spot lights: all of its photons land in one cell."""
+    """Indirect light far above the floor that a narrow spot lights: all of its photons land in one cell, which so many
+    would divide, were it not of equal cells everywhere."""
     scene = Scene()
     scene.add(quad(4.0), diffuse(0.5))
     scene.add(quad(0.05), diffuse(0.5), moved(0, 0, 3.0) @ np.diag([1, -1, -1, 1.0]))
     scene.lamp(1000.0, moved(0.6, 0.6, 1.0), "spot", cone_angle=0.02)
     scene.look((0, 0, 2.9), (0, 0, 3.0), 0.02, orthographic=True)
-    values = settings(photon_pass__photon_count=photons, pyramid__finest_resolution=8, gather__rays=1024)
+    grid = {"pyramid__finest_resolution": 8, "pyramid__adaptive_levels": 0}
+    values = settings(photon_pass__photon_count=photons, gather__rays=1024, **grid)
     return scene.render(values, seconds=600.0).indirect_mean
 
 

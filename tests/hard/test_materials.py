@@ -95,13 +95,14 @@ def test_mirrors_facing_each_other(check, reflectance):
     check(case, expected=1 / (1 - reflectance), got=got, bound=0.02)
 
 
-def test_perfect_mirrors_end():
+def test_perfect_mirrors_end(check):
     """Light between them never ends; the render does."""
     scene = Scene()
     scene.add(cuboid(), [closure("glossy", color=1.0, roughness=0.0)])
     scene.lamp(1.0, moved(0, 0, 0.6))
     picture = scene.render(settings(gather__max_depth=1000, photon_pass__max_depth=1000))
-    assert np.isfinite(picture.combined).all()
+    wrong = int((~np.isfinite(picture.combined)).sum())
+    check("room of six perfect mirrors: values that are no number", expected=0.0, got=wrong, bound=0.0)
 
 
 @pytest.mark.parametrize("ior", [1.0, 1.5])

@@ -20,6 +20,16 @@ def constant(value, height=4, width=6):
     return np.full((height, width, 3), value, np.float32)
 
 
+@pytest.mark.parametrize("share", [0.9, 0.5, 0.05])
+def test_half_a_picture_is_none(tmp_path, share):
+    """What a full disk leaves of a file."""
+    path = tmp_path / "picture.exr"
+    exr.write(path, np.random.default_rng(1).random((64, 64, 3), np.float32))
+    path.write_bytes(path.read_bytes()[: int(share * path.stat().st_size)])
+    with pytest.raises(CommandError, match=r"picture\.exr is not whole"):
+        exr.read_channels(path)
+
+
 def test_equal_pictures_have_no_error():
     picture = np.random.default_rng(1).random((4, 6, 3), np.float32)
     found = compare_pictures(picture, picture)

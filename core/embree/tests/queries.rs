@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Random, commit, device, mesh_scene, ray};
+use common::{Random, commit, device, is_close, mesh_scene, ray};
 use rgp_embree::{BuildQuality, Ray, SceneBuilder};
 
 const TRIANGLE: [[f32; 3]; 3] = [[0.0, 0.0, 2.0], [4.0, 0.0, 2.0], [0.0, 8.0, 2.0]];
@@ -16,7 +16,9 @@ fn square(z: f32) -> ([[f32; 3]; 4], [[u32; 3]; 2]) {
 fn a_hit_reports_distance_barycentrics_normal_and_ids() {
     let scene = mesh_scene(&device(), 7, &TRIANGLE, &[[0, 1, 2]]);
     let hit = scene.intersect(&ray([1.0, 2.0, -1.0], [0.0, 0.0, 0.5])).expect("the ray meets the triangle");
-    assert_eq!((hit.t, hit.u, hit.v), (6.0, 0.25, 0.25));
+    for (found, expected) in [(hit.t, 6.0), (hit.u, 0.25), (hit.v, 0.25)] {
+        assert!(is_close(found, expected), "{found} for {expected}");
+    }
     assert_eq!(hit.normal, [0.0, 0.0, 32.0]);
     assert_eq!((hit.primitive, hit.object), (0, 7));
 }
@@ -58,7 +60,8 @@ fn the_nearest_mesh_and_the_right_triangle_are_reported() {
     }
     let scene = commit(builder);
     let hit = scene.intersect(&ray([0.25, 0.75, 0.0], [0.0, 0.0, 1.0])).unwrap();
-    assert_eq!((hit.object, hit.primitive, hit.t), (9, 1, 1.0));
+    assert_eq!((hit.object, hit.primitive), (9, 1));
+    assert!(is_close(hit.t, 1.0), "{}", hit.t);
     assert_eq!(scene.bounds(), [[0.0, 0.0, 1.0], [1.0, 1.0, 5.0]]);
 }
 

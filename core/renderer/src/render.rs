@@ -155,12 +155,10 @@ impl Work<'_> {
         let [elevation, azimuth] = parse_bins(&settings.pyramid.bins)?;
         let bins = lit.plan.direction_bins().then_some(DirectionBins { elevation, azimuth });
         let wanted = settings.pyramid.finest_resolution;
-        let landings = self.pilot_landings()?;
         let surroundings = SceneSurroundings::new(lit, progress);
         let classes = NormalClasses::of_setting(&settings.pyramid.normal_classes);
         let measure = |resolution| {
-            let grid = grid(lit, self.seen, &landings, settings, resolution);
-            Layout::new(grid, classes, &surroundings).ok_or(RenderError::Cancelled)
+            Layout::new(self.grid(resolution)?, classes, &surroundings).ok_or(RenderError::Cancelled)
         };
         let budget = Budget::new(lit.accel.scene(), settings)?.less(self.caustic_bytes());
         let (layout, resolution) = budget.fit(wanted, bins, measure)?;
@@ -200,14 +198,25 @@ impl Work<'_> {
         self.gather(lookups.each_ref(), Some(&pyramid), stats)
     }
 
+    /// Cells as fine as what the camera and its gather rays see asks for, `resolution` of them along its longest side.
+    fn grid(&self, resolution: u32) -> Result<Grid, RenderError> {
+        let scene = self.lit.accel.scene();
+        let bounds = scene.bounds.map(Vec3::as_dvec3);
+        let world_origin = -scene.space.center * scene.space.scale;
+        let mut grid = Grid::new(seen_bounds(self.seen, scene.bounds), bounds, resolution, world_origin);
+        let landings = self.pilot_landings(&grid)?;
+        grid.refine(self.seen, &landings, self.settings.pyramid.adaptive_levels);
+        Ok(grid)
+    }
+
     /// Where photons will be plenty, for cells that are finer there.
-    fn pilot_landings(&self) -> Result<PilotLandings, RenderError> {
+    fn pilot_landings(&self, grid: &Grid) -> Result<PilotLandings, RenderError> {
         let Work { lit, settings, progress, .. } = *self;
         let count = settings.photon_pass.photon_count / PILOT_SHARE;
         if settings.pyramid.adaptive_levels == 0 || count == 0 {
             return Ok(PilotLandings::default());
         }
-        let landings = PhotonPilot::default();
+        let landings = PhotonPilot::new(grid);
         let pass = PhotonPass {
             carry: Carry::All,
             count,
@@ -218,7 +227,7 @@ impl Work<'_> {
         photon_pass::run(lit, pass, &landings, progress)?;
         let each = settings.photon_pass.photon_count as f64 / count as f64;
         let enough = f64::from(Pyramid::photons_to_divide(settings.pyramid.photons_per_cell));
-        Ok(PilotLandings { places: landings.places(), each, enough })
+        Ok(PilotLandings { counts: landings.counts(), each, enough })
     }
 
     /// Charges the pyramid to the effects that are read from it: bins to the glossy, all else to indirect light in general.
@@ -330,22 +339,6 @@ fn light_without<'a>(
     let mut settings = settings.clone();
     settings.gather.estimator = EstimatorKind::Path;
     light(scene, &settings, library, progress)
-}
-
-/// Cells as fine as what the camera and its gather rays see asks for, `resolution` of them along its longest side.
-fn grid(
-    lit: &LitScene<'_>,
-    seen: &[Reading],
-    landings: &PilotLandings,
-    settings: &RenderSettings,
-    resolution: u32,
-) -> Grid {
-    let scene = lit.accel.scene();
-    let bounds = scene.bounds.map(Vec3::as_dvec3);
-    let world_origin = -scene.space.center * scene.space.scale;
-    let mut grid = Grid::new(seen_bounds(seen, scene.bounds), bounds, resolution, world_origin);
-    grid.refine(seen, landings, settings.pyramid.adaptive_levels);
-    grid
 }
 
 /// Points beyond this share on either side do not decide how fine the cells are.

@@ -56,6 +56,12 @@ pub(crate) fn ray(origin: [f32; 3], direction: [f32; 3]) -> Ray {
     Ray { origin, direction, t_near: 0.0, t_far: f32::INFINITY, mask: u32::MAX, time: 0.0 }
 }
 
+/// Whether a number is the expected one but for its last places: Embree divides by a reciprocal that processors estimate
+/// differently, and valgrind differently again.
+pub(crate) fn is_close(found: f32, expected: f32) -> bool {
+    (found - expected).abs() <= 2.0 * f32::EPSILON * expected.abs()
+}
+
 /// A small generator of even random numbers, the same on every machine.
 pub(crate) struct Random(pub(crate) u64);
 

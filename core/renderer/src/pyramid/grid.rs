@@ -70,8 +70,8 @@ pub struct Reading {
 /// Where photons of a pilot landed.
 #[derive(Clone, Debug, Default)]
 pub struct PilotLandings {
-    /// Where, in scene space.
-    pub places: Vec<Vec3>,
+    /// How many, by block of the base level ([`Grid::block_at`]); empty where there was no pilot.
+    pub counts: Vec<u32>,
     /// How many photons of the photon pass each stands for.
     pub each: f64,
     /// Photons that a cell has to hold for its children to be read.
@@ -156,20 +156,13 @@ impl Grid {
         let mut wanted = vec![0_u32; self.refinements.len() * most];
         for reading in readings {
             let finer = (base.cell_size / reading.cell_size.max(f32::MIN_POSITIVE)).log2().round();
-            let block = base.cell(self.offset(reading.p)).map(|cell| self.block(cell));
-            let Some(block) = block else { continue };
+            let Some(block) = self.block_at(reading.p) else { continue };
             for count in wanted[block * most..][..most].iter_mut().take(finer.max(0.0) as usize) {
                 *count += 1;
             }
         }
-        let mut landed = vec![0_u32; self.refinements.len()];
-        for &p in &landings.places {
-            if let Some(cell) = base.cell(self.offset(p)) {
-                landed[self.block(cell)] += 1;
-            }
-        }
-        let blocks = wanted.chunks(most.max(1)).zip(landed);
-        for (refinements, (wanted, landed)) in self.refinements.iter_mut().zip(blocks) {
+        let blocks = wanted.chunks(most.max(1)).zip(&landings.counts);
+        for (refinements, (wanted, &landed)) in self.refinements.iter_mut().zip(blocks) {
             let photons = f64::from(landed) * landings.each;
             let cells = (0..).map(|deeper| LEAST_LIT * 4.0_f64.powi(deeper));
             let is_worth =
@@ -201,6 +194,19 @@ impl Grid {
             let worth = counted.iter().take_while(|&&votes| votes > 0).count() as u8;
             *refinements = worth.min(*refinements);
         }
+    }
+
+    /// How many blocks the base level has.
+    #[must_use]
+    pub fn block_count(&self) -> usize {
+        self.refinements.len()
+    }
+
+    /// Number of the block around a position in scene space, `None` outside the box of the base level.
+    #[must_use]
+    #[inline]
+    pub fn block_at(&self, p: Vec3) -> Option<usize> {
+        self.levels[self.base].cell(self.offset(p)).map(|cell| self.block(cell))
     }
 
     /// Number of the block of a cell of the base level.
@@ -329,10 +335,13 @@ mod tests {
         )
     }
 
-    /// Photons aplenty at the readings.
-    fn landings(readings: &[Reading]) -> PilotLandings {
-        let places = readings.iter().map(|reading| reading.p).collect();
-        PilotLandings { places, each: 1e6, enough: 16.0 }
+    /// So many photons at the readings.
+    fn landings(grid: &Grid, readings: &[Reading], photons: f64) -> PilotLandings {
+        let mut counts = vec![0; grid.block_count()];
+        for block in readings.iter().filter_map(|reading| grid.block_at(reading.p)) {
+            counts[block] += 1;
+        }
+        PilotLandings { counts, each: photons / readings.len() as f64, enough: 16.0 }
     }
 
     #[test]
@@ -388,7 +397,7 @@ mod tests {
             reading(Vec3::splat(0.49), 100.0),
             reading(Vec3::splat(0.49), 100.0),
         ];
-        grid.refine(&readings, &landings(&readings), 2);
+        grid.refine(&readings, &landings(&grid, &readings, 1e7), 2);
         assert_eq!(grid.finest(), base + 2);
         let finest = grid.finest();
         let located = |p: Vec3| grid.locate(grid.offset(p), finest).expect("inside");
@@ -412,7 +421,7 @@ mod tests {
         let mut grid = grid();
         let base = grid.finest();
         let readings = [a, a, b, b, c, c].map(|p| Reading { p, cell_size: 0.0 });
-        grid.refine(&readings, &landings(&readings), 2);
+        grid.refine(&readings, &landings(&grid, &readings, 1e7), 2);
         let at = |level: usize, p: Vec3| (level, grid.levels[level].cell(grid.offset(p)).expect("inside"));
         let votes = [
             (at(base, a), Vote::For),
@@ -440,8 +449,7 @@ mod tests {
         for (photons, levels) in [(0.0, 0), (250.0, 0), (260.0, 1), (1020.0, 1), (1030.0, 2), (1e9, 2)] {
             let mut grid = grid();
             let base = grid.base();
-            let landings = PilotLandings { places: vec![p; 2], each: photons / 2.0, enough: 16.0 };
-            grid.refine(&readings, &landings, 2);
+            grid.refine(&readings, &landings(&grid, &readings, photons), 2);
             assert_eq!(grid.existing(grid.offset(p), base + 2) - base, levels, "{photons} photons");
         }
     }
