@@ -141,7 +141,7 @@ def _sky(builder: "rgp_core.SceneBuilder") -> dict[str, Any]:
     image = {"extension": "repeat", "interpolation": "linear", "unassociate": False}
     instructions = [
         {"op": "geometry", "quantity": "position", "aside": "here"},
-        {"op": "panorama", "vector": 0, "ball": False},
+        {"op": "panorama", "vector": 0, "projection": "equirectangular"},
         {"op": "image", "texture": texture, "vector": 1, **image},
     ]
     program = {"instructions": instructions, "radiance": 2}

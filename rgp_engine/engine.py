@@ -31,6 +31,8 @@ class RGPRenderEngine(bpy.types.RenderEngine):
         self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
         if renderlayer.rgp.use_pass_indirect:
             self.register_pass(scene, renderlayer, "Indirect", 3, "RGB", "COLOR")
+        if renderlayer.rgp.use_pass_shadow_catcher:
+            self.register_pass(scene, renderlayer, "Shadow Catcher", 3, "RGB", "COLOR")
         if renderlayer.rgp.use_pass_error:
             self.register_pass(scene, renderlayer, "Error", 1, "X", "VALUE")
         if renderlayer.rgp.use_pass_audit:

@@ -160,9 +160,10 @@ class RenderSession:
 def _write_passes(core_session: "rgp_core.Session", b_result: Any) -> None:
     """All passes of the result that the core has a picture for."""
     names = {b_pass.name for b_pass in b_result.layers[0].passes}
-    for name in ("Combined", "Indirect", "Error", "Audit"):
+    for name in ("Combined", "Indirect", "Shadow Catcher", "Error", "Audit"):
         if name in names:
-            _write_pass(b_result, name, core_session.picture(name.lower()))
+            layer = name.lower().replace(" ", "_")
+            _write_pass(b_result, name, core_session.picture(layer))
 
 
 def _write_pass(b_result: Any, name: str, picture: Any) -> None:

@@ -29,6 +29,11 @@ def check_settings(settings: dict[str, dict[str, Any]]) -> None:
 def embree_version(embree_library: str) -> str:
     """Version of the Embree library at that path, such as "4.4.0". Raises EmbreeError."""
 
+def hosek_wilkie(elevation: float, turbidity: float, albedo: float) -> list[tuple[list[float], float]]:
+    """What the sky model of Hosek and Wilkie 2012 tabulates for each of red, green and blue: nine parameters of the
+    distribution, and the mean radiance that it is multiplied by. elevation of the sun 0 to π/2 rad, turbidity 1 to 10,
+    albedo 0 to 1; raises ValueError beyond."""
+
 def trace_floor(scene: Scene, settings: dict[str, dict[str, Any]], embree_library: str) -> dict[str, Any]:
     """Gather rays of a render traced one by one, without shading: {"rays", "seconds"}. What a gather is measured by."""
 
@@ -118,8 +123,8 @@ class Session:
         unknown, seconds_to_target also where there is no target or it will not be reached."""
 
     def picture(self, layer: str) -> npt.NDArray[np.float32]:
-        """Mean of the passes so far, rows from the bottom: "combined" (H, W, 4), "indirect" (H, W, 3); "error"
-        (H, W, 1) is the standard error of combined; "audit" (H, W, 1) the part of the light that an audit found wrong,
+        """Mean of the passes so far, rows from the bottom: "combined" (H, W, 4), "indirect" (H, W, 3),
+        "shadow_catcher" (H, W, 3); "error" (H, W, 1) is the standard error of combined; "audit" (H, W, 1) the part of the light that an audit found wrong,
         from -1 (all is missing) to 1 (there should be none), 0 where nothing is known to be wrong."""
 
     def stats(self) -> dict[str, Any]:

@@ -9,6 +9,8 @@ from .nodes import Input, Output, origin
 
 Closure = dict[str, Any]
 WeightedClosure = dict[str, Any]
+Part = tuple[Value | Varying, Closure, Output]
+"""A share, the closure that has it, and the shader that is behind it."""
 
 _NEGLIGIBLE = 1e-6
 # Principled inputs the core has under the same name in snake case: identifier and whether it is a color.
@@ -48,7 +50,8 @@ def closures(folder: Folder, entry: Input) -> tuple[list[WeightedClosure], list[
     value and are listed as the core's OutputRecords."""
     outputs: list[dict[str, Any]] = []
     records = []
-    for index, (share, closure) in enumerate(_parts(folder, entry, 1.0)):
+    for index, (share, closure, source) in enumerate(_parts(folder, entry, 1.0)):
+        folder.note_normals(index, source)
         record = {}
         for name, value in (("weight", share), *closure.items()):
             if isinstance(value, Varying):
@@ -63,10 +66,10 @@ def closures(folder: Folder, entry: Input) -> tuple[list[WeightedClosure], list[
 def emissions(folder: Folder, entry: Input) -> list[Value | Varying]:
     """What each emission that a shader input stands for gives; all else gives nothing."""
     parts = _parts(folder, entry, 1.0)
-    return [folder.product(share, part["radiance"]) for share, part in parts if part["kind"] == "emission"]
+    return [folder.product(share, part["radiance"]) for share, part, _ in parts if part["kind"] == "emission"]
 
 
-def _parts(folder: Folder, entry: Input, weight: float | Varying) -> list[tuple[Value | Varying, Closure]]:
+def _parts(folder: Folder, entry: Input, weight: float | Varying) -> list[Part]:
     source = origin(entry)
     if isinstance(source, Input) or source.b_node.mute:
         return []
@@ -81,9 +84,8 @@ def _parts(folder: Folder, entry: Input, weight: float | Varying) -> list[tuple[
         first = _parts(folder, source.input("Shader"), weight)
         return first + _parts(folder, source.input("Shader_001"), weight)
     _report_left_out(folder, source)
-    folder.note_normals(source)
     record, share = _closure(folder, source)
-    return [(folder.product(share, weight), record)] if record else []
+    return [(folder.product(share, weight), record, source)] if record else []
 
 
 def _share(folder: Folder, weight: float | Varying, factor: float | Varying) -> float | Varying:

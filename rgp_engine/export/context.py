@@ -48,7 +48,7 @@ class ExportContext:
         self.linking = Linking(self.b_depsgraph, self.log)
 
     def attribute_number(self, name: str) -> int:
-        """The core's number of a layer: "uv", "uv:NAME", "color", "attribute:NAME" or "generated"."""
+        """The core's number of a layer: "uv", "uv:NAME", "color", "attribute:NAME", "generated" or "island"."""
         return self.attributes.setdefault(name, len(self.attributes))
 
     def tick(self, doing: str) -> None:

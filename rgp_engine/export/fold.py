@@ -72,8 +72,8 @@ class Folder:
         """Clamped to 0 and 1."""
         return clamp(_constant(a))
 
-    def note_normals(self, source: Output) -> None:
-        """Remembers the normal a shader asks for: only compilers have use for one."""
+    def note_normals(self, closure: int, source: Output) -> None:
+        """Remembers the normals a closure's shader asks for: only compilers have use for them."""
 
     def typical(self, source: Output) -> Value:
         """A value that stands for a node's output."""

@@ -1,11 +1,13 @@
-"""Images of several files: sequences, of which a node shows one, and UDIM tiles.
+"""Images of several files: sequences, of which a node shows one, and UDIM tiles, which may be packed.
 
 Blender hands out only the pixels it shows itself, so that each file is opened as an image of its own for a moment.
 """
 
 import re
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import bpy
@@ -50,23 +52,41 @@ def tile_files(b_image: Any) -> list[tuple[int, int, str]]:
 
 
 @contextmanager
-def opened(b_like: Any, path: str) -> Iterator[Any | None]:
-    """The image in a file, read as another one is; None where it cannot be read."""
-    try:
-        b_image = bpy.data.images.load(path)
-    except RuntimeError:
-        yield None
+def unpacked(b_image: Any, path: str) -> Iterator[str]:
+    """Where a file of an image can be read: itself, or a copy of what is packed under its name."""
+    b_packed = next((b for b in b_image.packed_files if _absolute(b_image, b.filepath) == path), None)
+    if b_packed is None:
+        yield path
         return
-    try:
-        b_image.colorspace_settings.name = b_like.colorspace_settings.name
-        b_image.alpha_mode = b_like.alpha_mode
-        yield b_image
-    finally:
-        bpy.data.images.remove(b_image)
+    with tempfile.TemporaryDirectory(dir=bpy.app.tempdir) as folder:
+        copy = Path(folder) / bpy.path.basename(path)
+        copy.write_bytes(b_packed.packed_file.data)
+        yield str(copy)
+
+
+@contextmanager
+def opened(b_like: Any, path: str) -> Iterator[Any | None]:
+    """The image in a file, packed or not, read as another one is; None where it cannot be read."""
+    with unpacked(b_like, path) as readable:
+        try:
+            b_image = bpy.data.images.load(readable)
+        except RuntimeError:
+            yield None
+            return
+        try:
+            b_image.colorspace_settings.name = b_like.colorspace_settings.name
+            b_image.alpha_mode = b_like.alpha_mode
+            yield b_image
+        finally:
+            bpy.data.images.remove(b_image)
 
 
 def _path(b_image: Any) -> str:
-    return str(bpy.path.abspath(b_image.filepath, library=b_image.library))
+    return _absolute(b_image, b_image.filepath)
+
+
+def _absolute(b_image: Any, path: str) -> str:
+    return str(bpy.path.abspath(path, library=b_image.library))
 
 
 def _split(path: str, separators: str) -> tuple[str, str]:

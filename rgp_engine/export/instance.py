@@ -117,10 +117,7 @@ def _slot_materials(b_object: Any) -> list[Any]:
 
 def _report_unsupported(context: ExportContext, b_instance: Any) -> None:
     """What the object asks for beyond its triangles."""
-    b_object, b_owner = b_instance.object, owner(b_instance)
-    log = context.log
-    if b_object.is_shadow_catcher:
-        log.add(b_owner.name, "shadow catchers are not supported yet; rendered as it is")
+    b_object, log = b_instance.object, context.log
     for b_system in () if b_instance.is_instance else b_object.particle_systems:
         b_settings = b_system.settings
         if b_settings.type == "HAIR" and b_settings.render_type == "PATH":

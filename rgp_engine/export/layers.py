@@ -5,6 +5,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .islands import island_numbers
+
 Layer = npt.NDArray[np.float32]
 
 # Property that holds an attribute's values, and how many there are.
@@ -25,6 +27,8 @@ def corner_layer(b_mesh: Any, name: str, corners: npt.NDArray[np.int32]) -> Laye
     kind, _, which = name.partition(":")
     if kind == "generated":
         return np.asarray(_generated(b_mesh)[_corner_vertices(b_mesh)[corners]])
+    if kind == "island":
+        return island_numbers(b_mesh)[_corner_vertices(b_mesh)[corners], None]
     if kind == "uv":
         return _uvs(b_mesh, which, corners)
     if kind == "color":

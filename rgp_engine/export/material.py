@@ -54,17 +54,26 @@ def material_record(compiler: Compiler, b_material: Any) -> dict[str, Any]:
     elif compiler.normal is not None and getattr(b_material, "displacement_method", "BUMP") != "BUMP":
         compiler.report("its Displacement is rendered as a bump")
     records, outputs = closures(compiler, Input(b_output.inputs["Surface"], ()))
-    compiler.choose_normal()
+    if compiler.normals and not _softens_bumps(b_material):
+        compiler.report("Bump Map Correction cannot be switched off")
     record: dict[str, Any] = {"name": name, "closures": records}
-    if not outputs and compiler.normal is None:
+    if not outputs and not compiler.normals and compiler.normal is None:
         return record
     if len(compiler.instructions) > MOST_INSTRUCTIONS:
         compiler.report("its nodes are too many; what varies is replaced by a typical value")
         return record
-    instructions = compiler.instructions
-    normal = None if compiler.normal is None else compiler.normal.index
-    record["program"] = {"instructions": instructions, "outputs": outputs, "normal": normal}
+    record["program"] = {
+        "instructions": compiler.instructions,
+        "outputs": outputs,
+        "normal": None if compiler.normal is None else compiler.normal.index,
+        "normals": compiler.normals,
+    }
     return record
+
+
+def _softens_bumps(b_material: Any) -> bool:
+    """Cycles' Bump Map Correction; True where Cycles is not there to ask."""
+    return bool(getattr(getattr(b_material, "cycles", None), "use_bump_map_correction", True))
 
 
 def _default_record() -> dict[str, Any]:

@@ -6,6 +6,7 @@ from .context import ExportContext
 
 CAMERA, DIFFUSE, GLOSSY, TRANSMISSION, SHADOW = 1, 2, 4, 8, 16
 HOLDOUT = 64
+CATCHER = 1 << 31
 ALL = CAMERA | DIFFUSE | GLOSSY | TRANSMISSION | SHADOW
 
 _FLAGS = (
@@ -18,7 +19,8 @@ _FLAGS = (
 
 
 def instance_bits(context: ExportContext, b_instance: Any) -> int:
-    """The core's visibility bits of an instance: its object's and its instancer's together, and if it is a hole."""
+    """The core's visibility bits of an instance: its object's and its instancer's together, and if it is a hole or a
+    shadow catcher. A lamp is one, unless it belongs to the other objects."""
     bits = object_bits(b_instance.object)
     b_owner = owner(b_instance)
     if b_owner != b_instance.object:
@@ -28,6 +30,8 @@ def instance_bits(context: ExportContext, b_instance: Any) -> int:
         bits &= ~CAMERA
     if b_instance.object.is_holdout or b_owner.holdout_get(view_layer=b_view_layer):
         bits |= HOLDOUT if bits & CAMERA else 0
+    if b_instance.object.is_shadow_catcher or b_owner.is_shadow_catcher:
+        bits |= CATCHER if bits else 0
     return bits
 
 

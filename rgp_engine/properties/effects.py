@@ -54,3 +54,7 @@ class RGPEffectSettings(bpy.types.PropertyGroup):
         "Blur of what moves while the shutter is open, where the scene's motion blur is on; "
         "Off makes everything stand still",
     )
+    shadow_catcher: _switch(
+        "Shadow Catcher",
+        "Shadows on shadow catchers in place of the catchers themselves; Off shows these as ordinary objects",
+    )

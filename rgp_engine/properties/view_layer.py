@@ -22,6 +22,13 @@ class RGPViewLayerSettings(bpy.types.PropertyGroup):
         default=False,
         update=_update_passes,
     )
+    use_pass_shadow_catcher: bpy.props.BoolProperty(
+        name="Shadow Catcher",
+        description="Deliver the share of their light that other objects leave to shadow catchers as a pass of its "
+        "own, to multiply a background with",
+        default=False,
+        update=_update_passes,
+    )
     use_pass_error: bpy.props.BoolProperty(
         name="Error",
         description="Deliver the noise of the picture, the standard error of every pixel, as a pass of its own",

@@ -50,6 +50,7 @@ class RGP_PT_object_visibility(ClosedEnginePanel, Panel):
         if b_object.type != "LIGHT":
             column.prop(b_object, "visible_shadow", text="Shadow")
             self.layout.prop(b_object, "is_holdout")
+        self.layout.prop(b_object, "is_shadow_catcher")
 
 
 class RGP_PT_view_layer_passes(EnginePanel, Panel):
@@ -60,7 +61,7 @@ class RGP_PT_view_layer_passes(EnginePanel, Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        names = ("use_pass_indirect", "use_pass_error", "use_pass_audit")
+        names = ("use_pass_indirect", "use_pass_shadow_catcher", "use_pass_error", "use_pass_audit")
         draw_settings(self.layout, context.view_layer.rgp, *names)
 
 

@@ -129,6 +129,7 @@ class Session:
         channels, value = {
             "combined": (4, 0.25),
             "indirect": (3, 0.125),
+            "shadow_catcher": (3, 0.5),
             "error": (1, 0.01),
             "audit": (1, 0.5),
         }[layer]
@@ -154,6 +155,7 @@ class Core:
     SceneBuilder = SceneBuilder
     Session = Session
     embree_version = staticmethod(lambda _path: "4.4.0")
+    hosek_wilkie = staticmethod(lambda *_params: [([0.1] * 9, 1.0)] * 3)
     last: SceneBuilder
     settings: dict[str, Any]
     seconds = 0.05

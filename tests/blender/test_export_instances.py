@@ -6,7 +6,7 @@ import pytest
 
 from tests.blender import build
 
-ALL, HOLDOUT = 31, 64
+ALL, HOLDOUT, CATCHER = 31, 64, 1 << 31
 
 
 def names(recording):
@@ -372,9 +372,16 @@ def test_holdout_is_a_hole_for_the_camera(scene, export, of_collection):
     assert [record["visibility"] for record in exported.objects_of("Other")] == [ALL]
 
 
-def test_shadow_catcher_is_reported(scene, export, problems):
+@pytest.mark.parametrize("is_instancer", [False, True])
+def test_shadow_catchers_and_instances_by_one(scene, export, is_instancer):
     build.add_camera()
-    b_object = build.add_object("Quad", build.quad())
-    b_object.is_shadow_catcher = True
-    export()
-    assert "Quad: shadow catchers are not supported yet; rendered as it is" in problems()
+    b_collection = bpy.data.collections.new("Floor")
+    b_quad = bpy.data.objects.new("Quad", build.quad())
+    b_collection.objects.link(b_quad)
+    b_empty = build.add_object("Empty", None)
+    b_empty.instance_type, b_empty.instance_collection = "COLLECTION", b_collection
+    (b_empty if is_instancer else b_quad).is_shadow_catcher = True
+    build.add_object("Other", build.quad())
+    exported = export()
+    assert [record["visibility"] for record in exported.objects_of("Quad")] == [ALL | CATCHER]
+    assert [record["visibility"] for record in exported.objects_of("Other")] == [ALL]

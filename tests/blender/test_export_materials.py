@@ -335,34 +335,6 @@ def test_displacement_is_a_bump(scene, closures, recorded, problems):
     assert "Material: its Displacement is rendered as a bump" in problems()
 
 
-@pytest.mark.parametrize("second", ["none", "other", "same"])
-def test_shaders_with_different_normals_are_reported(scene, closures, problems, second):
-    b_material, b_tree, b_output = build.material()
-    b_shaders = [diffuse(b_tree, 0.1), diffuse(b_tree, 0.2)]
-    b_shaders[1].name = "Second"
-    b_bump = b_tree.nodes.new("ShaderNodeBump")
-    build.connect(b_tree, b_bump, b_shaders[0], "Normal")
-    if second != "none":
-        b_other = b_bump if second == "same" else build.node(b_tree, "ShaderNodeBump", Strength=0.3)
-        build.connect(b_tree, b_other, b_shaders[1], "Normal")
-    build.connect(b_tree, mixed(b_tree, 0.5, *b_shaders), b_output, "Surface")
-    closures(b_material)
-    message = "its Normal differs from another shader's, which is used for the whole material"
-    expected = [] if second == "same" else [f'Material: node "Second": {message}']
-    assert [text for text in problems() if text.startswith("Material")] == expected
-
-
-def test_a_coat_normal_does_not_bend_what_is_below(scene, closures, recorded, problems):
-    b_material, b_tree, b_output = build.material()
-    b_shader = b_tree.nodes.new("ShaderNodeBsdfPrincipled")
-    build.connect(b_tree, b_tree.nodes.new("ShaderNodeBump"), b_shader, "Coat Normal")
-    build.connect(b_tree, b_shader, b_output, "Surface")
-    closures(b_material)
-    message = "Coat Normal is not supported yet; Normal is used instead"
-    assert f'Material: node "Principled BSDF": {message}' in problems()
-    assert "program" not in recorded.last.material_of("Material")
-
-
 def test_what_may_emit_somewhere_counts_as_a_light(scene, problems):
     b_material, b_tree, b_output = build.material()
     b_emission = b_tree.nodes.new("ShaderNodeEmission")
@@ -482,4 +454,4 @@ def test_displacement_and_volume_are_reported(scene, closures, recorded, problem
         "Material: this Displacement is not supported yet; left out",
     ]
     program = recorded.last.material_of("Material")["program"]
-    assert program["instructions"][program["normal"]]["op"] == "bump"
+    assert program["instructions"][program["normals"][0]["register"]]["op"] == "bump"

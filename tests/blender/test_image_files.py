@@ -60,3 +60,23 @@ def test_a_file_is_read_as_its_image_and_leaves_nothing_behind(tmp_path):
     with opened(b_image, str(tmp_path / "missing.png")) as b_file:
         assert b_file is None
     assert set(bpy.data.images.keys()) == before
+
+
+def test_packed_tiles_need_no_files(tmp_path):
+    for number, shade in ((1001, 0.2), (1002, 0.6)):
+        b_image = bpy.data.images.new("Made", 2, 2)
+        b_image.pixels.foreach_set(np.tile(np.array([shade, shade, shade, 1.0], np.float32), 4))
+        b_image.filepath_raw, b_image.file_format = str(tmp_path / f"bark.{number}.png"), "PNG"
+        b_image.save()
+    b_tiled = bpy.data.images.load(str(tmp_path / "bark.1001.png"))
+    b_tiled.source, b_tiled.filepath = "TILED", str(tmp_path / "bark.<UDIM>.png")
+    b_tiled.reload()
+    b_tiled.pack()
+    for file in tmp_path.iterdir():
+        file.unlink()
+    shades = []
+    for _, _, path in tile_files(b_tiled):
+        with opened(b_tiled, path) as b_file:
+            shades.append(b_file.pixels[0])
+    assert shades == pytest.approx([0.2, 0.6], abs=1e-6)
+    assert not any(tmp_path.iterdir())

@@ -158,8 +158,8 @@ def test_problems_end_in_one_warning(scene, recorded, calls):
     assert args[1].startswith("2 problems")
 
 
-@pytest.mark.parametrize(("wants_pass", "names"), [(False, ["Combined"]), (True, ["Combined", "Indirect"])])
-def test_indirect_pass_on_request(scene, recorded, monkeypatch, wants_pass, names):
+@pytest.mark.parametrize("names", [["Combined"], ["Combined", "Indirect"], ["Combined", "Shadow Catcher"]])
+def test_passes_on_request(scene, recorded, monkeypatch, names):
     seen = []
     original = session._write_passes
 
@@ -168,7 +168,8 @@ def test_indirect_pass_on_request(scene, recorded, monkeypatch, wants_pass, name
         original(core_session, b_result)
 
     monkeypatch.setattr(session, "_write_passes", write_passes)
-    scene.view_layers[0].rgp.use_pass_indirect = wants_pass
+    for name in names[1:]:
+        setattr(scene.view_layers[0].rgp, f"use_pass_{name.lower().replace(' ', '_')}", True)
     build.lit_room()
     bpy.ops.render.render()
     assert seen == names

@@ -127,6 +127,7 @@ def test_world_object_and_view_layer_panels(scene):
     assert draw(scene_parts.RGP_PT_object_visibility, object=None) is None
     assert draw(scene_parts.RGP_PT_view_layer_passes, view_layer=scene.view_layers[0]) == [
         "Indirect",
+        "Shadow Catcher",
         "Error",
         "Audit",
     ]
@@ -179,7 +180,7 @@ def test_every_effect_has_a_switch_and_the_last_render_says_why(scene, monkeypat
     monkeypatch.setattr(report, "_last", None)
     switches = draw(effects.RGP_PT_effects, scene=scene)
     assert switches[:4] == ["Direct Light", "Indirect Diffuse", "Indirect Glossy", "Caustics"]
-    assert len(switches) == 10
+    assert len(switches) == 11
     glass = "glass on 'Bottle'"
     chosen = planned("mirrors_and_glass", glass, switch="off", computed=False)
     report.publish(Outcome(stats={"seconds": {}, "effects": [planned("caustics", glass), chosen]}))

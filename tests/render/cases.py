@@ -134,10 +134,29 @@ def joined(node: str, first: Surface, second: Surface, factor: float | None = No
     return add
 
 
+def bumped(shader: Surface, *normals: str) -> Surface:
+    """A shader with a bump of noise for some of its normals, named as its sockets are; the others stay smooth."""
+
+    def add(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
+        made = shader(tree)
+        noise, bump = tree.nodes.new("ShaderNodeTexNoise"), tree.nodes.new("ShaderNodeBump")
+        noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 3.0, 0.0
+        bump.inputs["Strength"].default_value, bump.inputs["Distance"].default_value = 1.0, 0.6
+        tree.links.new(noise.outputs[0], bump.inputs["Height"])
+        for normal in normals:
+            tree.links.new(bump.outputs[0], made.node.inputs[normal])
+        return made
+
+    return add
+
+
 GOLD = (0.9, 0.7, 0.4)
 BLUE = (0.2, 0.35, 0.7)
 TINT = (0.9, 0.95, 0.8)
 _diffuse = shader("BsdfDiffuse", Color=BLUE)
+_coated = shader(
+    "BsdfPrincipled", Base_Color=BLUE, Roughness=0.5, Metallic=0.6, Coat_Weight=1.0, Coat_Roughness=0.15
+)
 MATERIALS: dict[str, Surface] = {
     "diffuse": _diffuse,
     "glossy_0.1": shader("BsdfGlossy", Color=GOLD, Roughness=0.1),
@@ -181,6 +200,14 @@ MATERIALS: dict[str, Surface] = {
         "BsdfPrincipled", Base_Color=BLUE, Roughness=0.5, Emission_Color=GOLD, Emission_Strength=0.5
     ),
     "mix": joined("MixShader", _diffuse, shader("BsdfGlossy", Color=GOLD, Roughness=0.4), 0.3),
+    "bumped": bumped(_diffuse, "Normal"),
+    "bumped_glossy": bumped(shader("BsdfGlossy", Color=GOLD, Roughness=0.3), "Normal"),
+    "coat_over_bumps": bumped(_coated, "Normal"),
+    "coat_bumped": bumped(_coated, "Coat Normal"),
+    "coat_and_base_bumped": bumped(_coated, "Normal", "Coat Normal"),
+    "bumped_mix": joined(
+        "MixShader", bumped(_diffuse, "Normal"), shader("BsdfGlossy", Color=GOLD, Roughness=0.4), 0.3
+    ),
     "add": joined("AddShader", _diffuse, shader("Emission", Color=GOLD, Strength=0.3)),
 }
 """The ball's surface, by name; each is rendered under a constant world and under a square lamp."""

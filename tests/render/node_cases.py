@@ -7,7 +7,7 @@ Left out: the Mapping node of type Texture with inputs that vary, which is repor
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +36,10 @@ class NodeCase:
     bound: float = SMOOTH
     is_mirrored: bool = False
     """Of the plane."""
+    has_perspective: bool = False
+    """Of the camera, which is shifted then, and its picture twice as wide as high."""
+    has_islands: bool = False
+    """The plane is in two halves that do not hang together."""
 
 
 def noise_image(color_space: str = "Non-Color", alpha: bool = False, seed: int = 1) -> Any:
@@ -55,24 +59,38 @@ def node_scene(case: NodeCase) -> bpy.types.Scene:
     scene = common.start_empty_file()
     scene.render.resolution_x = scene.render.resolution_y = SIZE
     b_camera = build.add_camera((0, 0, 5))
-    b_camera.data.type, b_camera.data.ortho_scale = "ORTHO", 1.0
+    if case.has_perspective:
+        scene.render.resolution_x, scene.render.pixel_aspect_y = 2 * SIZE, 1.5
+        b_camera.data.angle, b_camera.data.shift_x = 0.2, 0.1
+    else:
+        b_camera.data.type, b_camera.data.ortho_scale = "ORTHO", 1.0
     b_material, b_tree, b_output = build.material()
     b_emission = b_tree.nodes.new("ShaderNodeEmission")
     b_raised = _scaled(b_tree, case.make(b_tree), 0.25, 0.5)
     build.connect(b_tree, b_raised, b_emission, "Color")
     build.connect(b_tree, b_emission, b_output, "Surface")
-    b_mesh = build.quad(size=1.5)
-    b_mesh.uv_layers.new(name="UVMap").uv.foreach_set(
-        "vector", np.array([0, 0, 2, 0, 2, 1, 0, 1], np.float32)
-    )
+    b_mesh = _two_quads() if case.has_islands else build.quad(size=1.5)
+    faces = len(b_mesh.polygons)
+    uvs = np.tile(np.array([0, 0, 2, 0, 2, 1, 0, 1], np.float32), faces)
+    b_mesh.uv_layers.new(name="UVMap").uv.foreach_set("vector", uvs)
     b_paint = b_mesh.attributes.new("Paint", "FLOAT_COLOR", "CORNER")
-    b_paint.data.foreach_set("color", np.linspace(0.0, 1.0, 16, dtype=np.float32))
+    b_paint.data.foreach_set("color", np.tile(np.linspace(0.0, 1.0, 16, dtype=np.float32), faces))
     b_mesh.materials.append(b_material)
     b_object = build.add_object("Plane", b_mesh)
     b_object.rotation_euler = (0.5, 0.3, 0.2)
     b_object.scale = (-0.9 if case.is_mirrored else 0.9, 1.0, 1.2)
     b_object.color, b_object.pass_index = (0.2, 0.4, 0.6, 0.5), 3
     return scene
+
+
+def _two_quads() -> Any:
+    """The right half of the plane, and the left one."""
+    halves = [
+        (x, y, 0.0)
+        for low in (0.0, -1.5)
+        for x, y in ((low, -1.5), (low + 1.5, -1.5), (low + 1.5, 1.5), (low, 1.5))
+    ]
+    return build.mesh("Halves", halves, [(0, 1, 2, 3), (4, 5, 6, 7)])
 
 
 def output_of(
@@ -148,21 +166,35 @@ def _sequence(**settings: Any) -> Make:
     return make
 
 
-def _tiled(numbers: tuple[int, ...]) -> Make:
-    """A picture for each tile; the plane lies on 1001 and 1002."""
+def _tiled(numbers: tuple[int, ...], packed: bool = False) -> Make:
+    """A picture for each tile; the plane lies on 1001 and 1002. Of those that are packed no file is left."""
 
     def make(b_tree: Any) -> Any:
-        for number in numbers:
-            _saved(f"rgp_tiles_{len(numbers)}.{number}.png", number)
+        files = [_saved(f"rgp_tiles_{len(numbers)}.{number}.png", number) for number in numbers]
         folder = Path(bpy.app.tempdir)
         b_texture = b_tree.nodes.new("ShaderNodeTexImage")
         b_texture.image = bpy.data.images.load(str(folder / f"rgp_tiles_{len(numbers)}.{numbers[0]}.png"))
         b_texture.image.source = "TILED"
         b_texture.image.filepath = str(folder / f"rgp_tiles_{len(numbers)}.<UDIM>.png")
         b_texture.image.reload()
+        if packed:
+            b_texture.image.pack()
+            for file in files:
+                Path(file).unlink()
         return b_texture.outputs["Color"]
 
     return make
+
+
+def _pictured(make: Make) -> Make:
+    """The image of noise for the node that is made."""
+
+    def make_with_image(b_tree: Any) -> Any:
+        b_output = make(b_tree)
+        b_output.node.image = noise_image("sRGB")
+        return b_output
+
+    return make_with_image
 
 
 def _image_with_alpha(uses_alpha: bool) -> Make:
@@ -227,10 +259,26 @@ def _curves_beyond_their_ends(extend: str) -> Make:
 
 def _surface_nodes() -> Iterator[tuple[str, NodeCase]]:
     """Nodes that look at the hit."""
-    for output in ("Generated", "Normal", "UV", "Object", "Camera", "Reflection"):
+    for output in ("Generated", "Normal", "UV", "Object", "Camera", "Window", "Reflection"):
         yield f"Texture Coordinate/{output}", NodeCase(output_of("TexCoord", output))
-    for output in ("Position", "Normal", "True Normal", "Incoming", "Parametric", "Backfacing"):
+    outputs = (
+        "Position",
+        "Normal",
+        "True Normal",
+        "Incoming",
+        "Parametric",
+        "Backfacing",
+        "Random Per Island",
+    )
+    for output in outputs:
         yield f"Geometry/{output}", NodeCase(output_of("NewGeometry", output))
+    tangent = NodeCase(output_of("NewGeometry", "Tangent"))
+    yield "Geometry/Tangent", tangent
+    yield "Geometry/Tangent mirrored", replace(tangent, is_mirrored=True)
+    window = output_of("TexCoord", "Window")
+    yield "Texture Coordinate/Window in perspective", NodeCase(window, has_perspective=True)
+    island = output_of("NewGeometry", "Random Per Island")
+    yield "Geometry/Random Per Island of two", NodeCase(island, EDGES, has_islands=True)
     for output in ("Location", "Color", "Object Index", "Random"):
         yield f"Object Info/{output}", NodeCase(output_of("ObjectInfo", output))
     yield "UV Map", NodeCase(output_of("UVMap"))
@@ -309,13 +357,17 @@ def _color_nodes() -> Iterator[tuple[str, NodeCase]]:
 def _textures() -> Iterator[tuple[str, NodeCase]]:
     """Images, and patterns of one kind of feature."""
     for extension in ("REPEAT", "EXTEND", "CLIP", "MIRROR"):
-        for interpolation in ("Linear", "Closest"):
-            bound = SMOOTH if interpolation == "Linear" and extension != "CLIP" else EDGES
+        for interpolation in ("Linear", "Closest", "Cubic"):
+            is_smooth = interpolation != "Closest" and (interpolation, extension) != ("Linear", "CLIP")
+            bound = SMOOTH if is_smooth else EDGES
             case = NodeCase(_image(extension, interpolation), bound)
             yield f"Image Texture/{extension} {interpolation}", case
     for uses_alpha in (True, False):
         name = "with alpha" if uses_alpha else "without its alpha"
         yield f"Image Texture/{name}", NodeCase(_image_with_alpha(uses_alpha))
+    for projection in ("SPHERE", "TUBE", "BOX"):
+        make = output_of("TexImage", inputs={0: "TexCoord"}, projection=projection)
+        yield f"Image Texture/{projection}", NodeCase(_pictured(make), EDGES)
     sequences = {
         "sequence": {"frame_duration": 6, "frame_offset": 2},
         "sequence, its end": {"frame_duration": 4, "frame_start": -20},
@@ -329,6 +381,7 @@ def _textures() -> Iterator[tuple[str, NodeCase]]:
     for name, settings in sequences.items():
         yield f"Image Texture/{name}", NodeCase(_sequence(**settings))
     yield "Image Texture/UDIM tiles", NodeCase(_tiled((1001, 1002)), EDGES)
+    yield "Image Texture/UDIM tiles, packed", NodeCase(_tiled((1001, 1002), packed=True), EDGES)
     yield "Image Texture/UDIM with a tile missing", NodeCase(_tiled((1001,)), EDGES)
     kinds = ("LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "RADIAL", "QUADRATIC_SPHERE", "SPHERICAL")
     for kind in kinds:
@@ -347,7 +400,7 @@ def _textures() -> Iterator[tuple[str, NodeCase]]:
 
 
 def _noises() -> Iterator[tuple[str, NodeCase]]:
-    """Noise, waves and Voronoi's cells."""
+    """Noise and waves."""
     octaves = {"W": 0.7, "Scale": 3.0, "Detail": 2.5, "Roughness": 0.6, "Lacunarity": 2.2, "Distortion": 0.4}
     for dimensions in ("1D", "2D", "3D", "4D"):
         for output in ("Fac", "Color"):
@@ -363,20 +416,52 @@ def _noises() -> Iterator[tuple[str, NodeCase]]:
         options = {"wave_type": kind, f"{kind.lower()}_direction": direction, "wave_profile": profile}
         make = output_of("TexWave", "Color", waves, **options)
         yield f"Wave Texture/{kind} {direction} {profile}", NodeCase(make)
-    cells = {"Scale": 3.0, "Smoothness": 0.6, "Exponent": 0.7, "Randomness": 0.8}
-    for dimensions in ("2D", "3D"):
+
+
+def _cells() -> Iterator[tuple[str, NodeCase]]:
+    """Voronoi's cells."""
+    cells = {"W": IMAGE, "Scale": 3.0, "Smoothness": 0.6, "Exponent": 0.7, "Randomness": 0.8}
+    for dimensions in ("1D", "2D", "3D", "4D"):
+        space = {"voronoi_dimensions": dimensions}
         for feature in ("F1", "F2", "SMOOTH_F1", "DISTANCE_TO_EDGE"):
-            for metric in ("EUCLIDEAN", "MINKOWSKI"):
-                options = {"voronoi_dimensions": dimensions, "feature": feature, "distance": metric}
+            for metric in ("EUCLIDEAN", "MINKOWSKI") if dimensions in ("2D", "3D") else ("EUCLIDEAN",):
+                options = {**space, "feature": feature, "distance": metric}
                 make = output_of("TexVoronoi", "Distance", cells, **options)
                 yield f"Voronoi Texture/{dimensions} {feature} {metric}", NodeCase(make)
-    for output in ("Color", "Position"):
-        for feature in ("F1", "F2", "SMOOTH_F1"):
-            make = output_of("TexVoronoi", output, {"Scale": 3.0}, feature=feature)
-            yield f"Voronoi Texture/{feature} {output}", NodeCase(make, EDGES)
+        make = output_of("TexVoronoi", "Radius", cells, feature="N_SPHERE_RADIUS", **space)
+        yield f"Voronoi Texture/{dimensions} N-Sphere Radius", NodeCase(make, EDGES)
+        for output in ("Color", "W" if dimensions in ("1D", "4D") else "Position"):
+            make = output_of("TexVoronoi", output, cells, **space)
+            yield f"Voronoi Texture/{dimensions} {output}", NodeCase(make, EDGES)
+    for feature in ("F2", "SMOOTH_F1"):
+        make = output_of("TexVoronoi", "Color", {"Scale": 3.0}, feature=feature)
+        yield f"Voronoi Texture/{feature} Color", NodeCase(make, EDGES)
+    yield from _lattices({**cells, "Detail": 2.5, "Roughness": 0.6, "Lacunarity": 2.2})
+
+
+def _lattices(inputs: Mapping[Any, Any]) -> Iterator[tuple[str, NodeCase]]:
+    """Voronoi's cells with finer ones on top."""
+    features = (
+        ("1D", "DISTANCE_TO_EDGE"),
+        ("2D", "F1"),
+        ("2D", "DISTANCE_TO_EDGE"),
+        ("3D", "F2"),
+        ("4D", "F1"),
+    )
+    for normalize in (True, False):
+        how = "normalized" if normalize else "as it is"
+        for dimensions, feature in features:
+            options = {"voronoi_dimensions": dimensions, "feature": feature, "normalize": normalize}
+            make = output_of("TexVoronoi", "Distance", inputs, **options)
+            yield f"Voronoi Texture/{dimensions} {feature} Detail, {how}", NodeCase(make)
+        for output in ("Color", "Position"):
+            make = output_of("TexVoronoi", output, inputs, normalize=normalize)
+            yield f"Voronoi Texture/{output} Detail, {how}", NodeCase(make, EDGES)
 
 
 NODES: dict[str, NodeCase] = dict(
-    case for part in (_surface_nodes, _value_nodes, _color_nodes, _textures, _noises) for case in part()
+    case
+    for part in (_surface_nodes, _value_nodes, _color_nodes, _textures, _noises, _cells)
+    for case in part()
 )
 """By the node's name and what is special."""

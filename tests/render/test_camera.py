@@ -123,6 +123,11 @@ def _transparent_holdout(scene: bpy.types.Scene) -> None:
     _holdout(scene)
 
 
+def _catching_floor(scene: bpy.types.Scene) -> None:
+    _transparent_film(scene)
+    bpy.data.objects["Floor"].is_shadow_catcher = True
+
+
 def _expose(scene: bpy.types.Scene) -> None:
     scene.rgp.film.exposure = scene.cycles.film_exposure = 2.5
 
@@ -141,6 +146,8 @@ def _expose(scene: bpy.types.Scene) -> None:
         ("material/transparent_mix/world", _transparent_film),
         ("material/transparent_mix/world", _transparent_holdout),
         ("material/diffuse/lamp", _expose),
+        ("lamp/area_square", _catching_floor),
+        ("material/diffuse/world", _catching_floor),
     ],
 )
 def test_film_and_visibility(case: str, change: Callable[[bpy.types.Scene], None]) -> None:

@@ -81,9 +81,8 @@ def gradient() -> Any:
 
 
 def skies() -> list[str]:
-    """Models of the Blender in use that are rendered as they are."""
-    kinds = bpy.types.ShaderNodeTexSky.bl_rna.properties["sky_type"].enum_items.keys()
-    return [kind for kind in kinds if kind != "HOSEK_WILKIE"]
+    """Models of the Blender in use."""
+    return list(bpy.types.ShaderNodeTexSky.bl_rna.properties["sky_type"].enum_items.keys())
 
 
 WORLDS: dict[str, Callable[[], Any]] = {
@@ -96,7 +95,7 @@ WORLDS: dict[str, Callable[[], Any]] = {
     **{
         f"sky_{kind.lower()}_sun": lambda kind=kind: sky(kind, sun=True)
         for kind in skies()
-        if kind != "PREETHAM"
+        if kind not in ("PREETHAM", "HOSEK_WILKIE")
     },
 }
 """By name; the even color is among the lamps of `cases.py`."""

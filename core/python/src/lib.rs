@@ -7,6 +7,8 @@ mod session;
 
 use std::path::PathBuf;
 
+use hw_skymodel::rgb::{SkyParams, SkyState};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rgp_renderer::embree_version as version_of;
@@ -25,6 +27,17 @@ fn settings_schema(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
 #[pyfunction]
 fn check_settings(settings: &Bound<'_, PyDict>) -> PyResult<()> {
     session::parse_settings(settings).map(|_| ())
+}
+
+/// What the sky model of Hosek and Wilkie 2012 tabulates for each of red, green and blue: nine parameters of the
+/// distribution, and the mean radiance that it is multiplied by. The elevation is that of the sun (rad).
+#[pyfunction]
+fn hosek_wilkie(elevation: f32, turbidity: f32, albedo: f32) -> PyResult<Vec<([f32; 9], f32)>> {
+    let params = SkyParams { elevation, turbidity, albedo: [albedo; 3] };
+    let state = SkyState::new(&params).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let (distributions, radiances) = state.raw();
+    let (channels, _) = distributions.as_chunks::<9>();
+    Ok(channels.iter().copied().zip(radiances).collect())
 }
 
 /// Version of the Embree library at a path.
@@ -58,6 +71,7 @@ fn rgp_core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(settings_schema, m)?)?;
     m.add_function(wrap_pyfunction!(check_settings, m)?)?;
     m.add_function(wrap_pyfunction!(embree_version, m)?)?;
+    m.add_function(wrap_pyfunction!(hosek_wilkie, m)?)?;
     m.add_function(wrap_pyfunction!(trace_floor, m)?)?;
     m.add_class::<scene::SceneBuilder>()?;
     m.add_class::<scene::Scene>()?;

@@ -119,11 +119,12 @@ impl Session {
         let (pixels, channels) = match layer {
             "combined" => (py.detach(|| film.combined()), 4),
             "indirect" => (py.detach(|| film.indirect()), 3),
+            "shadow_catcher" => (py.detach(|| film.shadow_catcher()), 3),
             "error" => (py.detach(|| film.error()), 1),
             "audit" => (py.detach(|| film.audit()), 1),
             other => {
-                let message =
-                    format!("there is no layer '{other}'; there are combined, indirect, error and audit");
+                let known = "combined, indirect, shadow_catcher, error and audit";
+                let message = format!("there is no layer '{other}'; there are {known}");
                 return Err(PyValueError::new_err(message));
             }
         };

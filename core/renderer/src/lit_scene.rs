@@ -5,6 +5,7 @@ mod hit_point;
 mod motion;
 
 use glam::{DVec3, Vec3};
+use smallvec::SmallVec;
 
 use crate::accel::{Accel, Hit, Ray};
 use crate::bsdf::{Bsdf, BsdfSample, LobeSet, PreparedMaterial, ShadingFrame, Varying};
@@ -93,12 +94,20 @@ impl<'a> LitScene<'a> {
     #[inline(never)]
     fn varying_bsdf(&self, material: &PreparedMaterial, varying: &Varying, point: &HitPoint<'_>) -> Bsdf<'a> {
         let registers = varying.run(point, &self.accel.scene().textures);
-        let ns = match varying.normal(&registers) {
-            // A program may mix normals, or compute something that is none.
-            Some(normal) => point.outward(normal.v.truncate()).try_normalize().unwrap_or(point.ns),
-            None => point.ns,
-        };
-        material.at(varying, &registers).into_bsdf(point.wo, point.ng, ns)
+        let normals: SmallVec<[Vec3; 4]> = varying
+            .normals()
+            .iter()
+            .map(|register| match register {
+                // A program may mix normals, or compute something that is none.
+                Some(register) => {
+                    let normal = registers[*register as usize].v.truncate();
+                    point.outward(normal).try_normalize().unwrap_or(point.ns)
+                }
+                None => point.ns,
+            })
+            .collect();
+        let ns = if let [shared] = normals[..] { shared } else { point.ng };
+        material.at(varying, &registers, &normals).into_bsdf(point.wo, point.ng, ns)
     }
 
     /// The albedo at a hit on a material that varies and is a Lambert reflector; `None` where it is more.

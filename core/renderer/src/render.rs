@@ -6,7 +6,7 @@ mod caustics;
 mod memory;
 mod surroundings;
 
-use std::path::Path;
+use std::path;
 use std::time::Instant;
 
 use glam::{DVec3, Vec3};
@@ -15,7 +15,7 @@ use crate::accel::Accel;
 use crate::bsdf::{MaterialTable, PreparedMaterial};
 use crate::effects_plan::{Effect, EffectsPlan};
 use crate::error::RenderError;
-use crate::estimator::{Estimator, PhotonSink};
+use crate::estimator::{Estimator, Path, PhotonSink};
 use crate::film::Film;
 use crate::gather::{self, Auditor, Gatherer, PyramidLookup, Stop, TraceFloor};
 use crate::light::{Environment, Lights};
@@ -42,7 +42,7 @@ use surroundings::SceneSurroundings;
 pub fn render(
     scene: &Scene,
     settings: &RenderSettings,
-    library: &Path,
+    library: &path::Path,
     film: &Film,
     progress: &Progress,
     stats: &mut Stats,
@@ -62,14 +62,14 @@ pub fn render(
 pub fn trace_floor(
     scene: &Scene,
     settings: &RenderSettings,
-    library: &Path,
+    library: &path::Path,
 ) -> Result<TraceFloor, RenderError> {
     let progress = Progress::default();
     let [_, _, width, height] = scene.camera.region;
     let film = Film::new(width, height, &settings.film);
     threads(settings)?.install(|| {
         let lit = light(scene, settings, library, &progress)?;
-        Ok(gather::trace_floor(&Gatherer::new(&lit, &crate::estimator::Path, None, settings), &film))
+        Ok(gather::trace_floor(&Gatherer::new(&lit, &Path, None, settings), &film))
     })
 }
 
@@ -81,7 +81,7 @@ fn threads(settings: &RenderSettings) -> Result<rayon::ThreadPool, RenderError> 
 fn passes(
     scene: &Scene,
     settings: &RenderSettings,
-    library: &Path,
+    library: &path::Path,
     film: &Film,
     progress: &Progress,
     stats: &mut Stats,
@@ -93,8 +93,19 @@ fn passes(
         bytes: scene.textures.iter().map(Texture::bytes).sum(),
     };
     let mut lit = light(scene, settings, library, progress)?;
+    let catchers = lit.plan.shadow_catcher.then(|| scene.without_objects());
+    let without = catchers.as_ref().map(|catchers| light_without(catchers, settings, library, progress));
+    let without = without.transpose()?;
     stats.seconds.accel = clock.elapsed().as_secs_f64();
     stats.effects = lit.plan.report();
+    if let Some(without) = &without {
+        film.expect_catchers(scene.world.film_transparent);
+        let [_, _, width, height] = scene.camera.region;
+        let film_bytes = Film::catcher_bytes_for(width, height) as usize;
+        let lights = &without.lights;
+        let bytes = film_bytes + lights.bytes() + lights.emitter_bytes() + lights.world_bytes();
+        stats.effects[Effect::ShadowCatcher as usize].bytes = bytes;
+    }
     if lit.plan.direct {
         stats.effects[Effect::DirectLight as usize].bytes = lit.lights.bytes();
     }
@@ -108,7 +119,7 @@ fn passes(
     let seen = if lit.plan.indirect() { gather::readings(&lit, rays, seed) } else { Vec::new() };
     stats.aim = aim::aim(&mut lit, &seen, settings);
     progress.check()?;
-    let work = Work { lit: &lit, seen: &seen, settings, film, progress };
+    let work = Work { lit: &lit, without: without.as_ref(), seen: &seen, settings, film, progress };
     match settings.gather.estimator {
         EstimatorKind::Pyramid => work.pyramid(stats),
         EstimatorKind::Pyramid2006 => work.pyramid_2006(stats),
@@ -126,6 +137,8 @@ const PILOT_SHARE: u64 = 64;
 /// The passes over a scene that is ready to be traced.
 struct Work<'a> {
     lit: &'a LitScene<'a>,
+    /// The scene without what is not a shadow catcher, where there is one.
+    without: Option<&'a LitScene<'a>>,
     /// Points that the camera and its gather rays see.
     seen: &'a [Reading],
     settings: &'a RenderSettings,
@@ -266,7 +279,8 @@ impl Work<'_> {
             Gatherer::new(lit, estimators[half], caustics, settings).audited(auditor.as_ref())
         });
         let stop = Stop::new(&self.settings.gather, self.progress.elapsed());
-        let gathered = gather::run(&gatherers, self.film, stop, self.progress);
+        let without = self.without.map(|without| Gatherer::new(without, &Path, None, settings));
+        let gathered = gather::run(&gatherers, without.as_ref(), self.film, stop, self.progress);
         stats.error = self.film.picture_error();
         stats.seconds.gather = clock.elapsed().as_secs_f64();
         if let Some(auditor) = &auditor {
@@ -287,7 +301,7 @@ impl Work<'_> {
 fn light<'a>(
     scene: &'a Scene,
     settings: &RenderSettings,
-    library: &Path,
+    library: &path::Path,
     progress: &Progress,
 ) -> Result<LitScene<'a>, RenderError> {
     let mut materials: Vec<PreparedMaterial> =
@@ -313,6 +327,18 @@ fn light<'a>(
     let threads = settings.render.threads as usize;
     let accel = Accel::build(scene, &proxies, plan.motion_blur, library, threads, progress)?;
     Ok(LitScene { accel, materials, lights, plan })
+}
+
+/// As [`light`], for a scene whose light is gathered without photons.
+fn light_without<'a>(
+    scene: &'a Scene,
+    settings: &RenderSettings,
+    library: &path::Path,
+    progress: &Progress,
+) -> Result<LitScene<'a>, RenderError> {
+    let mut settings = settings.clone();
+    settings.gather.estimator = EstimatorKind::Path;
+    light(scene, &settings, library, progress)
 }
 
 /// Points beyond this share on either side do not decide how fine the cells are.

@@ -154,6 +154,8 @@ pub struct EffectSettings {
     pub depth_of_field: Switch,
     /// Blur of what moves while the shutter is open.
     pub motion_blur: Switch,
+    /// Shadows on catchers in place of the catchers.
+    pub shadow_catcher: Switch,
 }
 
 /// Knobs of the machine.
@@ -332,6 +334,7 @@ pub const KNOBS: &[Knob] = &[
     knob("effects", "alpha_transparency", SWITCH, "", "Light straight through transparent surfaces; Off makes them opaque"),
     knob("effects", "depth_of_field", SWITCH, "", "Blur of what is not in focus, where the camera's depth of field is on; Off makes everything sharp"),
     knob("effects", "motion_blur", SWITCH, "", "Blur of what moves while the shutter is open, where the scene's motion blur is on; Off makes everything stand still"),
+    knob("effects", "shadow_catcher", SWITCH, "", "Shadows on shadow catchers in place of the catchers themselves; Off shows these as ordinary objects"),
     knob("film", "filter", Kind::Enum { choices: &["blackman_harris", "box"] }, "", "Pixel filter"),
     knob("film", "filter_width", Kind::Float { minimum: 0.1, maximum: 10.0 }, "pixels", "Width of the pixel filter as in Cycles: a box is that wide, Blackman-Harris reaches that far to either side"),
     knob("film", "exposure", Kind::Float { minimum: 0.0, maximum: 1e6 }, "", "Factor of all light in the picture, as Cycles' exposure"),

@@ -6,8 +6,8 @@ mod support;
 use glam::{DMat4, DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::effects_plan::Effect;
-use rgp_renderer::scene::Scene;
 use rgp_renderer::scene::record::{CameraRecord, ClosureRecord, LensRecord};
+use rgp_renderer::scene::{Scene, SceneBuilder, visibility};
 use rgp_renderer::settings::{EffectSettings, RenderSettings, Switch};
 use rgp_renderer::stats::EffectStats;
 use support::*;
@@ -26,7 +26,7 @@ fn glass() -> ClosureRecord {
 
 /// Everything there is: a diffuse room, a glass ball, a glossy and a mirror-like one, a panel that lets light through, a
 /// lamp, a surface that shines, a world that is seen through a hole, and a camera with a lens. Diffuse and glossy colors are multiplied by `shade`.
-fn everything(pixels: u32, shade: f32) -> Scene {
+fn builder_of_everything(pixels: u32, shade: f32) -> SceneBuilder {
     let room = Room { pixels, ..room(glass()) };
     let mut builder = room.equipment();
     let [_, (ball, glass)] = room.meshes();
@@ -52,6 +52,21 @@ fn everything(pixels: u32, shade: f32) -> Scene {
     builder.set_world(world(0.3));
     let lens = LensRecord { radius: 0.01, blades: 6, rotation: 0.2, ratio: 1.0, focus_distance: 1.0 };
     builder.set_camera(CameraRecord { lens: Some(lens), ..room.camera() });
+    builder
+}
+
+fn everything(pixels: u32, shade: f32) -> Scene {
+    builder_of_everything(pixels, shade).finish().expect("a scene with a camera")
+}
+
+/// The same with a shadow catcher, of which the picture holds a ratio of lights and not their sum.
+fn everything_and_a_catcher(pixels: u32) -> Scene {
+    let mut builder = builder_of_everything(pixels, 1.0);
+    let block = cuboid(Vec3::new(-0.3, -0.2, -0.94), Vec3::new(0.1, 0.2, -0.7));
+    let mesh = builder.add_mesh(block).expect("arrays that fit together");
+    let material = builder.add_material(diffuse(0.5)) as u32;
+    let visible_to = visibility::ALL | visibility::CATCHER;
+    builder.add_object("catcher", mesh, DMat4::IDENTITY, vec![material], visible_to).expect("a mesh");
     builder.finish().expect("a scene with a camera")
 }
 
@@ -162,7 +177,7 @@ fn on_changes_nothing_where_nothing_calls_for_it() {
 fn a_diffuse_room_pays_for_nothing_else() {
     let picture = finish_and_render(Room::default().builder(), &switched(Switch::Auto, &[]));
     let called_for = Effect::ALL.map(|effect| of(&picture, effect).called_for);
-    assert_eq!(called_for, [true, true, false, false, false, false, false, false, false, false]);
+    assert_eq!(called_for, [true, true, false, false, false, false, false, false, false, false, false]);
     assert_eq!((picture.stats.pyramid.bins, picture.stats.pyramid.glossy_cells), (0, 0));
     let rays = picture.stats.rays;
     let own: u64 = picture.stats.effects.iter().map(|effect| effect.rays).sum();
@@ -172,7 +187,7 @@ fn a_diffuse_room_pays_for_nothing_else() {
 /// What is off is neither traced nor stored, and the scene still says who asked for it.
 #[test]
 fn off_leaves_out() {
-    let scene = everything(32, 1.0);
+    let scene = everything_and_a_catcher(32);
     let all = render(&scene, &switched(Switch::Auto, &[]));
     for effect in Effect::ALL {
         let off = render(&scene, &switched(Switch::Off, &[effect]));
@@ -183,7 +198,8 @@ fn off_leaves_out() {
         let also_follows = effect == Effect::IndirectDiffuse;
         assert!(also_follows || traced_or_stored == (0, 0, 0), "{effect:?}: {traced_or_stored:?}");
         assert_ne!(bits(&off), bits(&all), "{effect:?}");
-        let brings_light = !matches!(effect, Effect::DepthOfField | Effect::MotionBlur);
+        let brings_light =
+            !matches!(effect, Effect::DepthOfField | Effect::MotionBlur | Effect::ShadowCatcher);
         assert!(!brings_light || mean(&off.radiance()) < mean(&all.radiance()), "{effect:?} brings light");
     }
     let bare = render(&scene, &switched(Switch::Off, &Effect::ALL));
@@ -210,7 +226,7 @@ fn costs_add_up() {
     let mut settings = switched(Switch::Auto, &[]);
     settings.gather.rays = 256;
     settings.photon_pass.photon_count = 200_000;
-    let stats = render(&everything(96, 1.0), &settings).stats;
+    let stats = render(&everything_and_a_catcher(96), &settings).stats;
     let sum: f64 = stats.effects.iter().map(|effect| effect.seconds).sum();
     let passes = stats.seconds.photon_pass + stats.seconds.pyramid + stats.seconds.gather;
     // All of the photon pass and of the pyramid belongs to effects; of the gather all but camera rays.

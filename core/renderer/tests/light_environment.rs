@@ -11,7 +11,7 @@ use rgp_renderer::color::Rgb;
 use rgp_renderer::light::Lights;
 use rgp_renderer::scene::{Lamp, LampShape, Scene, WorldProgram, visibility};
 use rgp_renderer::shader::{
-    Aside, Encoding, Extension, Instruction, Interpolation, Pixels, Program, Quantity, Texture,
+    Aside, Encoding, Extension, Instruction, Interpolation, Pixels, Program, Projection, Quantity, Texture,
 };
 
 const COLUMNS: usize = 32;
@@ -29,7 +29,7 @@ fn panorama(lamps: Vec<Lamp>, interpolation: Interpolation, texel: impl Fn(usize
     scene.textures = vec![texture].into();
     let instructions = vec![
         Instruction::Geometry { quantity: Quantity::Position, aside: Aside::Here },
-        Instruction::Panorama { vector: 0, ball: false },
+        Instruction::Panorama { vector: 0, projection: Projection::Equirectangular },
         Instruction::Image {
             texture: 0,
             vector: 1,

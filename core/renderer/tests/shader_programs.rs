@@ -60,9 +60,10 @@ fn any_instruction(kind: usize, r: [u16; 10], x: [f32; 4]) -> Instruction {
         ),
         (json!({"kind": "white_noise", "dimensions": dimensions, "color": true}), 2),
         (
-            json!({"kind": "voronoi", "feature": pick(&["F1", "F2", "SMOOTH_F1", "DISTANCE_TO_EDGE"]),
-            "metric": pick(&["EUCLIDEAN", "MINKOWSKI"]), "flat": r[8].is_multiple_of(2), "output": "position"}),
-            5,
+            json!({"kind": "voronoi", "dimensions": dimensions, "hash": pick(&["words", "floats"]),
+            "feature": pick(&["F1", "F2", "SMOOTH_F1", "DISTANCE_TO_EDGE", "N_SPHERE_RADIUS"]),
+            "metric": pick(&["EUCLIDEAN", "MINKOWSKI"]), "normalize": true, "output": "position"}),
+            9,
         ),
         (json!({"kind": "wave", "rings": true, "direction": "Z", "profile": "SAW"}), 7),
         (json!({"kind": "magic", "depth": r[8] % 256}), 3),
@@ -101,6 +102,10 @@ fn any_instruction(kind: usize, r: [u16; 10], x: [f32; 4]) -> Instruction {
             let space = NormalSpace::Tangent;
             return Instruction::NormalMap { color: r[0], strength: r[1], space, attribute: r[2].into() };
         }
+        19 => json!({"op": "tangent", "generated": r[0]}),
+        20 => {
+            json!({"op": "panorama", "vector": r[0], "projection": pick(&["sphere", "tube", "mirror_ball"])})
+        }
         _ => return Instruction::Constant { value: x },
     };
     serde_json::from_value(record).expect("a record of an instruction")
@@ -115,7 +120,7 @@ fn any_number() -> impl Strategy<Value = f32> {
 
 /// Kind, operands and numbers of each instruction.
 fn any_steps() -> impl Strategy<Value = Vec<(usize, [u16; 10], [f32; 4])>> {
-    let step = (0_usize..22, prop::array::uniform10(0_u16..8), prop::array::uniform4(any_number()));
+    let step = (0_usize..24, prop::array::uniform10(0_u16..8), prop::array::uniform4(any_number()));
     prop::collection::vec(step, 1..12)
 }
 

@@ -26,6 +26,7 @@ fn programmed(closure: ClosureRecord, inputs: &[(Input, f32)]) -> MaterialRecord
         instructions: inputs.iter().map(constant).collect(),
         outputs: inputs.iter().enumerate().map(output).collect(),
         normal: None,
+        normals: Vec::new(),
     });
     record
 }
@@ -69,6 +70,7 @@ fn a_program_of_constants_changes_no_share() {
         instructions: vec![Instruction::Constant { value: [0.5; 4] }],
         outputs: vec![output(0), output(1)],
         normal: None,
+        normals: Vec::new(),
     });
     same_picture(constant, varying);
 }
@@ -95,6 +97,7 @@ fn texture_program(
         ],
         outputs: vec![OutputRecord { closure: 0, input, register: 1 }],
         normal: None,
+        normals: Vec::new(),
     })
 }
 
@@ -162,6 +165,7 @@ fn the_length_of_a_normal_does_not_matter() {
             ],
             outputs: Vec::new(),
             normal: Some(2),
+            normals: Vec::new(),
         });
         let mut builder = SceneBuilder::default();
         place(&mut builder, floor(1.0, 0.0), &[record]);

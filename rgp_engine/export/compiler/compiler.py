@@ -49,8 +49,9 @@ class Compiler(Folder):
         self.aside = "here"
         """Where on the surface things are asked for, while the slope of a bump is compiled."""
         self.normal: Register | None = None
-        """The register that is the shading normal."""
-        self._normals: list[tuple[Any, Register | None]] = []
+        """The register that is the shading normal of what has none of its own."""
+        self.normals: list[dict[str, Any]] = []
+        """The core's NormalRecords: closures with a shading normal of their own."""
         self._silent = Folder(subject)
         self._known: dict[tuple[Any, ...], Operand] = {}
         self._numbers: dict[str, Register] = {}
@@ -91,36 +92,21 @@ class Compiler(Folder):
             return super().unit(a)
         return Varying(self.clamped(_operand(a)).index, clamp(a.number))
 
-    def note_normals(self, source: Output) -> None:
-        """Remembers the normal a shader asks for, and reports those it cannot have."""
-        entry = source.find("Normal")
-        if entry is None:
-            return
-        own = self._linked_normal(source.b_node, entry)
-        self._normals.append((source.b_node, own))
-        coat = source.find("Coat Normal")
-        if coat is not None and isinstance(origin(coat), Output) and self.compile(coat) != own:
-            self.report_node(source.b_node, "Coat Normal is not supported yet; Normal is used instead")
+    def note_normals(self, closure: int, source: Output) -> None:
+        """Remembers the normals a closure's shader asks for."""
+        self._note_normal(closure, source, "Normal", of_coat=False)
+        if source.find("Coat Normal") is not None and self.value(source.input("Coat Weight")) != 0.0:
+            self._note_normal(closure, source, "Coat Normal", of_coat=True)
 
-    def choose_normal(self) -> None:
-        """Makes the first normal that feeds a shader that of the whole material; shaders with others are reported."""
-        chosen = next((own for _, own in self._normals if own is not None), None)
-        if chosen is None:
+    def _note_normal(self, closure: int, source: Output, identifier: str, of_coat: bool) -> None:
+        if not self.linked(source, identifier):
             return
-        self.normal = chosen
-        for b_node, own in self._normals:
-            if own != chosen:
-                message = "its Normal differs from another shader's, which is used for the whole material"
-                self.report_node(b_node, message)
-
-    def _linked_normal(self, b_node: Any, entry: Input) -> Register | None:
-        if not isinstance(origin(entry), Output):
-            return None
-        found = self.compile(entry)
+        found = self.compile(source.input(identifier))
         if isinstance(found, Register):
-            return found
-        self.report_node(b_node, "a constant Normal is not supported; the surface's own is used instead")
-        return None
+            self.normals.append({"closure": closure, "coat": of_coat, "register": found.index})
+        else:
+            message = f"a constant {identifier} is not supported; the surface's own is used instead"
+            self.report_node(source.b_node, message)
 
     # What the nodes are made of.
 

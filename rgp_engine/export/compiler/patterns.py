@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+import bpy
+
 from ..nodes import Output
 from .mapping import texture_vector
 
@@ -10,7 +12,15 @@ if TYPE_CHECKING:
     from .compiler import Compiler, Operand, Register
 
 _DIMENSIONS = {"1D": 1, "2D": 2, "3D": 3, "4D": 4}
-_VORONOI_OUTPUTS = {"Distance": "distance", "Color": "color", "Position": "position"}
+_VORONOI_OUTPUTS = {
+    "Distance": "distance",
+    "Radius": "distance",
+    "Color": "color",
+    "Position": "position",
+    "W": "w",
+}
+# What cells' random numbers are made of, since that Blender and before.
+_WORDS_SINCE = (4, 3)
 
 
 def _pattern(c: "Compiler", options: dict[str, Any], inputs: "list[Register]") -> "Register":
@@ -44,23 +54,18 @@ def _white_noise(c: "Compiler", source: Output) -> "Operand | None":
     return _pattern(c, options, [vector, c.input(source, "W")])
 
 
-def _is_plain_voronoi(c: "Compiler", source: Output) -> bool:
-    b_node = source.b_node
-    is_single = not c.linked(source, "Detail") and b_node.inputs["Detail"].default_value == 0.0
-    known = b_node.feature != "N_SPHERE_RADIUS" and source.b_socket.identifier in _VORONOI_OUTPUTS
-    return known and is_single and not b_node.normalize and b_node.voronoi_dimensions in ("2D", "3D")
-
-
 def _voronoi(c: "Compiler", source: Output) -> "Operand | None":
     b_node = source.b_node
     options = {
         "kind": "voronoi",
+        "dimensions": _DIMENSIONS[b_node.voronoi_dimensions],
         "feature": b_node.feature,
         "metric": b_node.distance,
-        "flat": b_node.voronoi_dimensions == "2D",
+        "hash": "words" if bpy.app.version >= _WORDS_SINCE else "floats",
+        "normalize": bool(b_node.normalize),
         "output": _VORONOI_OUTPUTS[source.b_socket.identifier],
     }
-    names = ("Scale", "Smoothness", "Exponent", "Randomness")
+    names = ("W", "Scale", "Detail", "Roughness", "Lacunarity", "Smoothness", "Exponent", "Randomness")
     return _pattern(c, options, [texture_vector(c, source), *(c.input(source, name) for name in names)])
 
 
@@ -122,8 +127,5 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
 }
 """Instructions of the procedural textures."""
 
-SOURCES: "dict[str, Callable[[Compiler, Output], bool]]" = {
-    **dict.fromkeys(NODES, lambda _c, _source: True),
-    "TEX_VORONOI": _is_plain_voronoi,
-}
+SOURCES: "dict[str, Callable[[Compiler, Output], bool]]" = dict.fromkeys(NODES, lambda _c, _source: True)
 """Whether such a node can be computed."""

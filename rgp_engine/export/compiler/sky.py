@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ... import native
 from .. import sky
 from ..nodes import Output
 from .mapping import own_mapping
@@ -22,14 +23,16 @@ _EARTH = 6371e3  # its radius (m)
 def sky_texture(c: "Compiler", source: Output) -> "Operand | None":
     """The sky around a direction."""
     b_node = source.b_node
-    if b_node.sky_type == "HOSEK_WILKIE":
-        c.report_node(b_node, "Hosek / Wilkie is not supported yet; Preetham is used instead")
     direction = c.input(source, "Vector") if c.linked(source, "Vector") else c.generated()
     direction = own_mapping(c, b_node, direction)
     if b_node.sky_type in ("PREETHAM", "HOSEK_WILKIE"):
         x, y, z = b_node.sun_direction.normalized()
         direction = _sun_in_front(c, direction, math.atan2(y, x))
-        return _seen(c, direction, ("preetham", math.asin(z), b_node.turbidity))
+        if b_node.sky_type == "PREETHAM":
+            return _seen(c, direction, ("preetham", math.asin(z), b_node.turbidity))
+        # It knows no sun below the horizon.
+        elevation = max(math.asin(z), 0.0)
+        return _seen(c, direction, ("hosek_wilkie", elevation, b_node.turbidity, b_node.ground_albedo))
     elevation, rotation = _sun_place(b_node.sun_elevation, b_node.sun_rotation)
     direction = _sun_in_front(c, direction, 0.5 * math.pi - rotation)
     # Blender before 5.0 says dust where later ones say aerosol.
@@ -72,6 +75,7 @@ def _texels(kind: str, *of_model: Any) -> npt.NDArray[np.float32]:
     """The picture of a sky: kept, since it takes a second and most renders are of the sky of the one before."""
     compute: dict[str, Callable[..., npt.NDArray[np.float64]]] = {
         "preetham": sky.preetham,
+        "hosek_wilkie": _hosek_wilkie,
         "single": sky.single_scattering,
         "multiple": sky.multiple_scattering,
     }
@@ -80,12 +84,17 @@ def _texels(kind: str, *of_model: Any) -> npt.NDArray[np.float32]:
     return texels
 
 
+def _hosek_wilkie(elevation: float, turbidity: float, albedo: float) -> npt.NDArray[np.float64]:
+    fitted = native.core().hosek_wilkie(elevation, turbidity, albedo)
+    return sky.hosek_wilkie(elevation, fitted)
+
+
 def _seen(c: "Compiler", direction: "Register", model: tuple[Any, ...]) -> "Register":
     """The color of the sky along a direction."""
     textures, key = c.context.textures, repr(model)
     texture = textures.get(key)
     if texture is None:
         textures[key] = texture = c.context.builder.add_texture("sky", _texels(*model), "linear")
-    place = c.emit("panorama", vector=direction, ball=False)
+    place = c.emit("panorama", vector=direction, projection="equirectangular")
     fields = {"extension": "repeat", "interpolation": "linear", "unassociate": False}
     return c.emit("image", texture=texture, vector=place, **fields)

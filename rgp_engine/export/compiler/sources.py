@@ -1,18 +1,19 @@
 """Nodes that look at the hit: textures, coordinates, geometry, attributes."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from ..coordinates import matrix_array
 from ..nodes import Output
 from .images import texture_of, tiles_of, unassociates
 from .mapping import own_mapping
+from .places import camera_position, inverse_rows, window_position
 from .sky import sky_texture
 
 if TYPE_CHECKING:
     from .compiler import Compiler, Operand, Register
 
 _EXTENSIONS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
+_INTERPOLATIONS = {"Linear": "linear", "Closest": "closest", "Cubic": "cubic", "Smart": "cubic"}
 
 
 def _image(c: "Compiler", source: Output) -> "Operand | None":
@@ -22,7 +23,7 @@ def _image(c: "Compiler", source: Output) -> "Operand | None":
         return None
     fields = {
         "extension": _EXTENSIONS[b_node.extension],
-        "interpolation": _interpolation(c, b_node),
+        "interpolation": _INTERPOLATIONS[b_node.interpolation],
         "unassociate": unassociates(b_node),
     }
     vector = own_mapping(c, b_node, c.input(source, "Vector") if c.linked(source, "Vector") else _uv(c))
@@ -33,12 +34,14 @@ def _image(c: "Compiler", source: Output) -> "Operand | None":
     elif tiles:
         color = c.emit("tiled_image", tiles=tiles, vector=vector, **fields)
     else:
+        if b_node.projection != "FLAT":
+            vector = c.emit("panorama", vector=vector, projection=b_node.projection.lower())
         color = c.emit("image", texture=texture, vector=vector, **fields)
     return c.emit("alpha", of=color) if source.b_socket.identifier == "Alpha" else color
 
 
 def _is_rendered(projection: str, texture: int | None, tiles: "list[dict[str, int]]") -> bool:
-    return projection == "FLAT" if tiles else texture is not None and projection in ("FLAT", "BOX")
+    return projection == "FLAT" if tiles else texture is not None
 
 
 def _environment(c: "Compiler", source: Output) -> "Operand | None":
@@ -48,17 +51,10 @@ def _environment(c: "Compiler", source: Output) -> "Operand | None":
         return None
     direction = c.input(source, "Vector") if c.linked(source, "Vector") else c.quantity("position")
     direction = own_mapping(c, b_node, direction)
-    place = c.emit("panorama", vector=direction, ball=b_node.projection == "MIRROR_BALL")
-    fields = {"texture": texture, "extension": "repeat", "interpolation": _interpolation(c, b_node)}
+    place = c.emit("panorama", vector=direction, projection=b_node.projection.lower())
+    interpolation = _INTERPOLATIONS[b_node.interpolation]
+    fields = {"texture": texture, "extension": "repeat", "interpolation": interpolation}
     return c.emit("image", vector=place, unassociate=False, **fields)
-
-
-def _interpolation(c: "Compiler", b_node: Any) -> str:
-    if b_node.interpolation not in ("Closest", "Linear"):
-        c.report_node(
-            b_node, f"{b_node.interpolation.lower()} interpolation is not supported yet; linear is used"
-        )
-    return "closest" if b_node.interpolation == "Closest" else "linear"
 
 
 def _uv(c: "Compiler") -> "Register":
@@ -88,25 +84,10 @@ def _texture_coordinate(c: "Compiler", source: Output) -> "Operand | None":
         b_object = source.b_node.object
         if b_object is None:
             return c.quantity("object_position")
-        return c.transformed(c.quantity("position"), _inverse_rows(b_object.matrix_world))
+        return c.transformed(c.quantity("position"), inverse_rows(b_object.matrix_world))
     if name == "Camera":
-        return _camera_position(c)
-    return None
-
-
-def _camera_position(c: "Compiler") -> "Register":
-    """Position in the camera's space, z forwards."""
-    b_camera = c.context.b_depsgraph.scene_eval.camera
-    rows = _inverse_rows(b_camera.matrix_world.normalized())
-    rows[2] = [-x for x in rows[2]]
-    if c.of_world:
-        rows = [[*row[:3], 0.0] for row in rows]
-    return c.transformed(c.quantity("position"), rows)
-
-
-def _inverse_rows(b_matrix: Any) -> list[list[float]]:
-    rows: list[list[float]] = matrix_array(b_matrix.inverted_safe())[:3].tolist()
-    return rows
+        return camera_position(c)
+    return window_position(c) if name == "Window" else None
 
 
 _GEOMETRY = {
@@ -120,6 +101,10 @@ _GEOMETRY = {
 
 
 def _geometry(c: "Compiler", source: Output) -> "Operand | None":
+    if source.b_socket.identifier == "Tangent" and not c.of_world:
+        return c.emit("tangent", generated=c.generated())
+    if source.b_socket.identifier == "Random Per Island" and not c.of_world:
+        return c.attribute("island")
     name = _GEOMETRY.get(source.b_socket.identifier)
     return None if name is None else c.quantity(name)
 

@@ -8,7 +8,15 @@ from functools import partial
 
 import bpy
 
-from tests.render import cases, linking_cases, motion_cases, node_cases, path_cases, world_cases
+from tests.render import (
+    cases,
+    catcher_cases,
+    linking_cases,
+    motion_cases,
+    node_cases,
+    path_cases,
+    world_cases,
+)
 
 
 @dataclass(frozen=True)
@@ -33,4 +41,5 @@ def features() -> list[Feature]:
             for name, case in node_cases.NODES.items()
         ),
         *(Feature(f"linking/{name}", partial(linking_cases.build, name)) for name in linking_cases.LINKINGS),
+        *(Feature(f"catcher/{name}", partial(catcher_cases.build, name)) for name in catcher_cases.CATCHERS),
     ]

@@ -22,6 +22,12 @@ pub(super) struct Glass {
 }
 
 impl Glass {
+    /// Glass of one tint whose reflectance is that of its index.
+    pub(super) fn plain(color: Rgb, rough: Roughness, ior: f32) -> Self {
+        let f0 = Rgb::splat(fresnel::f0_from_ior(ior));
+        Self { ior, f0, reflection_tint: color, transmission_tint: color, rough }
+    }
+
     /// Classes of both lobes.
     pub(super) fn classes(&self) -> LobeSet {
         self.rough.reflection_class() | transmission_class(self.rough.alpha, self.ior)
@@ -53,6 +59,7 @@ impl Glass {
             albedo: reflected * (self.f0 * (total - rise) + Rgb::splat(rise)),
             class: self.rough.reflection_class(),
             slot,
+            normal: 0,
         });
         let transmitted = weight * gain * self.transmission_tint;
         lobes.push(Lobe {
@@ -63,6 +70,7 @@ impl Glass {
             albedo: transmitted * (Rgb::WHITE - self.f0) * through,
             class,
             slot: slot + 1,
+            normal: 0,
         });
     }
 }
@@ -91,5 +99,6 @@ pub(super) fn push_refraction(
         albedo: weight * refracted,
         class,
         slot,
+        normal: 0,
     });
 }

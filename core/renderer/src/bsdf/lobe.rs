@@ -78,13 +78,25 @@ pub(super) struct Lobe {
     pub(super) class: LobeSet,
     /// The same number for the same part of the same material, whatever the viewer.
     pub(super) slot: u8,
+    /// Number of the normal it scatters about, one above its place in [`super::normals::Normals`]; 0 is that of the hit's
+    /// frame.
+    pub(super) normal: u8,
 }
 
 impl Lobe {
     /// Lambert reflection of `albedo`.
     pub(super) fn lambert(albedo: Rgb, slot: u8) -> Self {
         let (shape, fresnel) = (Shape::Lambert, Fresnel::Full);
-        Self { shape, fresnel, weight: albedo, gain: Rgb::WHITE, albedo, class: LobeSet::DIFFUSE, slot }
+        Self {
+            shape,
+            fresnel,
+            weight: albedo,
+            gain: Rgb::WHITE,
+            albedo,
+            class: LobeSet::DIFFUSE,
+            slot,
+            normal: 0,
+        }
     }
 
     /// Lambert transmission of `albedo`.

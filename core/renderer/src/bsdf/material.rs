@@ -1,18 +1,19 @@
 //! Materials made ready for the render: closures checked, merged and classified once, so that a hit costs little.
 
-use std::ops::Index;
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use smallvec::SmallVec;
 
-use super::dielectric::{self, Glass};
+use super::closure::{Part, PreparedClosure, most_lobes};
+use super::dielectric::Glass;
 use super::lobe::Lobe;
+use super::normals::{Layers, Normals};
 use super::principled::{self, Principled};
-use super::reflection::{self, Roughness};
+use super::reflection::Roughness;
 use super::sanitize::Sanitizer;
 use super::varying::Varying;
-use super::{Bsdf, LobeSet, MAX_LOBES, MaterialRef, ShadingFrame, energy_table, fresnel};
+use super::{Bsdf, LobeSet, MAX_LOBES, MaterialRef, ShadingFrame};
 use crate::color::Rgb;
 use crate::scene::record::{ClosureRecord, WeightedClosure};
 use crate::scene::{Material, Problem};
@@ -20,27 +21,6 @@ use crate::shader::Registers;
 
 /// Least value of [`PreparedMaterial::specular_tint`], so that dividing by it is safe.
 const LEAST_TINT: f32 = 0.02;
-
-/// A closure that makes lobes; Lambert, transparency and constant emission are merged in the material.
-#[derive(Clone, Debug)]
-enum PreparedClosure {
-    Glossy {
-        color: Rgb,
-        rough: Roughness,
-    },
-    Glass(Glass),
-    Refraction {
-        rough: Roughness,
-        ior: f32,
-    },
-    /// Its color is in the weight.
-    Translucent,
-    /// Its color is in the weight.
-    Sheen {
-        roughness: f32,
-    },
-    Principled(Box<Principled>),
-}
 
 /// What the effects plan takes out of a material: it is absorbed.
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,7 +42,9 @@ pub struct PreparedMaterial {
     straight: Rgb,
     /// Share of a camera ray that is a hole in the picture.
     holdout: f32,
-    closures: Vec<(Rgb, PreparedClosure)>,
+    closures: Vec<Part>,
+    /// Of a material at one hit: the normals of closures that do not share one.
+    normals: Normals,
     classes: LobeSet,
     constant_lambert: Option<Rgb>,
     mean_emission: Rgb,
@@ -85,7 +67,7 @@ impl PreparedMaterial {
     #[must_use]
     pub fn new(material: &Material, problems: &mut Vec<Problem>) -> Self {
         let mut sanitizer = Sanitizer::default();
-        let mut prepared = Self::of_closures(&material.closures, &mut sanitizer);
+        let mut prepared = Self::of_closures(&material.closures, Normals::default(), &mut sanitizer);
         prepared.finish();
         sanitizer.report(&material.name, problems);
         if let Some(program) = &material.program {
@@ -95,26 +77,26 @@ impl PreparedMaterial {
     }
 
     /// What a hit needs of closures that hold there alone.
-    pub(super) fn at_hit(closures: &[WeightedClosure]) -> Self {
-        Self::of_closures(closures, &mut Sanitizer::default())
+    pub(super) fn at_hit(closures: &[WeightedClosure], normals: Normals) -> Self {
+        Self::of_closures(closures, normals, &mut Sanitizer::default())
     }
 
-    fn of_closures(closures: &[WeightedClosure], sanitizer: &mut Sanitizer) -> Self {
-        let mut prepared = Self::default();
+    fn of_closures(closures: &[WeightedClosure], normals: Normals, sanitizer: &mut Sanitizer) -> Self {
+        let mut prepared = Self { normals, ..Self::default() };
         let mut lobes = 1;
-        for weighted in closures {
+        for (index, weighted) in closures.iter().enumerate() {
             let weight = sanitizer.weight(weighted.weight);
             let closure = sanitizer.closure(&weighted.closure);
-            lobes += most_lobes(&closure);
+            lobes += most_lobes(&closure, prepared.normals.is_shared());
             if lobes > MAX_LOBES {
                 sanitizer.dropped += 1;
             } else if !weight.is_black() {
-                prepared.add(weight, &closure);
+                prepared.add(weight, &closure, index);
             }
         }
         prepared.lambert = sanitizer.at_most_one(prepared.lambert);
         prepared.straight = sanitizer.at_most_one(prepared.straight);
-        let tints = prepared.closures.iter().map(|(weight, closure)| *weight * closure.rough_tint());
+        let tints = prepared.closures.iter().map(|part| part.weight * part.closure.rough_tint());
         prepared.specular_tint = tints.sum::<Rgb>().map(|c| c.max(LEAST_TINT));
         prepared
     }
@@ -122,7 +104,7 @@ impl PreparedMaterial {
     /// Makes the material one of closures that differ from point to point, and whatever it says of itself hold for all.
     fn vary(&mut self, varying: Varying) {
         for extreme in varying.extremes() {
-            let mut extreme = Self::at_hit(&extreme);
+            let mut extreme = Self::at_hit(&extreme, Normals::default());
             extreme.finish();
             self.classes = self.classes | extreme.classes;
             self.transparency += extreme.straight;
@@ -146,9 +128,11 @@ impl PreparedMaterial {
         self.varying.as_deref()
     }
 
-    fn add(&mut self, weight: Rgb, closure: &ClosureRecord) {
-        let closure = match *closure {
-            ClosureRecord::Diffuse { color } => {
+    /// Adds the closure that is number `index` of the material's.
+    fn add(&mut self, weight: Rgb, closure: &ClosureRecord, index: usize) {
+        let is_merged = self.normals.is_shared();
+        let (weight, closure) = match *closure {
+            ClosureRecord::Diffuse { color } if is_merged => {
                 self.lambert += weight * color;
                 return;
             }
@@ -164,59 +148,50 @@ impl PreparedMaterial {
                 self.holdout += weight.mean();
                 return;
             }
-            ClosureRecord::Translucent { color } => {
-                self.closures.push((weight * color, PreparedClosure::Translucent));
-                return;
-            }
+            ClosureRecord::Diffuse { color } => (weight * color, PreparedClosure::Diffuse),
+            ClosureRecord::Translucent { color } => (weight * color, PreparedClosure::Translucent),
             ClosureRecord::Glossy { color, roughness } => {
-                PreparedClosure::Glossy { color, rough: Roughness::new(roughness) }
+                (weight, PreparedClosure::Glossy { color, rough: Roughness::new(roughness) })
             }
-            ClosureRecord::Glass { color, roughness, ior } => PreparedClosure::Glass(Glass {
-                ior,
-                f0: Rgb::splat(fresnel::f0_from_ior(ior)),
-                reflection_tint: color,
-                transmission_tint: color,
-                rough: Roughness::new(roughness),
-            }),
+            ClosureRecord::Glass { color, roughness, ior } => {
+                (weight, PreparedClosure::Glass(Glass::plain(color, Roughness::new(roughness), ior)))
+            }
             ClosureRecord::Refraction { color, roughness, ior } => {
-                let closure = PreparedClosure::Refraction { rough: Roughness::new(roughness), ior };
-                self.closures.push((weight * color, closure));
-                return;
+                (weight * color, PreparedClosure::Refraction { rough: Roughness::new(roughness), ior })
             }
             ClosureRecord::Sheen { color, roughness } => {
-                self.closures.push((weight * color, PreparedClosure::Sheen { roughness }));
-                return;
+                (weight * color, PreparedClosure::Sheen { roughness })
             }
             ClosureRecord::Principled(ref record) => {
                 self.straight += weight * (1.0 - record.alpha);
                 let weight = weight * record.alpha;
                 let principled = Principled::new(record);
-                if let Some(albedo) = principled.lambert() {
+                if let Some(albedo) = principled.lambert().filter(|_| is_merged) {
                     self.lambert += weight * albedo;
                     self.bare_emission += weight * principled.emission;
                     return;
                 }
-                self.closures.push((weight, PreparedClosure::Principled(Box::new(principled))));
-                return;
+                (weight, PreparedClosure::Principled(Box::new(principled)))
             }
         };
-        self.closures.push((weight, closure));
+        let normals = self.normals.of_closure(index, &closure);
+        self.closures.push(Part { weight, closure, normals });
     }
 
     /// Derives what is asked of the material as a whole.
     fn finish(&mut self) {
         self.classes = if self.lambert.is_black() { LobeSet::EMPTY } else { LobeSet::DIFFUSE };
-        for (_, closure) in &self.closures {
-            self.classes = self.classes | closure.classes();
+        for part in &self.closures {
+            self.classes = self.classes | part.closure.classes();
         }
         self.transparency = self.straight;
-        self.refracts = self.closures.iter().any(|(_, closure)| closure.transmits());
-        self.etas = self.closures.iter().flat_map(|(_, closure)| closure.etas()).collect();
+        self.refracts = self.closures.iter().any(|part| part.closure.transmits());
+        self.etas = self.closures.iter().flat_map(|part| part.closure.etas()).collect();
         if self.closures.is_empty() && self.straight.is_black() && self.holdout == 0.0 {
             self.constant_lambert = Some(self.lambert);
         }
         self.mean_emission = self.cosine_mean_emission();
-        self.emits_unevenly = self.closures.iter().any(|(_, closure)| closure.dims_its_emission());
+        self.emits_unevenly = self.closures.iter().any(|part| part.closure.dims_its_emission());
     }
 
     /// ∫ 2 cos · emission dcos.
@@ -242,8 +217,8 @@ impl PreparedMaterial {
     pub fn leave_out_emission(&mut self) {
         self.left_out.emission = true;
         (self.bare_emission, self.mean_emission) = (Rgb::BLACK, Rgb::BLACK);
-        for (_, closure) in &mut self.closures {
-            if let PreparedClosure::Principled(principled) = closure {
+        for part in &mut self.closures {
+            if let PreparedClosure::Principled(principled) = &mut part.closure {
                 principled.emission = Rgb::BLACK;
             }
         }
@@ -258,10 +233,11 @@ impl PreparedMaterial {
         }
     }
 
-    /// The material as it is at one point, where the program of `varying` gave `registers`.
+    /// The material as it is at one point, where the program of `varying` gave `registers`; `normals` are those it has
+    /// there ([`Varying::normals`]), on the mesh's own side.
     #[must_use]
-    pub fn at(&self, varying: &Varying, registers: &Registers) -> Self {
-        let mut here = varying.material(registers);
+    pub fn at(&self, varying: &Varying, registers: &Registers, normals: &[Vec3]) -> Self {
+        let mut here = varying.material(registers, normals);
         here.left_out.lobes = self.left_out.lobes;
         if self.left_out.emission {
             here.leave_out_emission();
@@ -322,6 +298,16 @@ impl PreparedMaterial {
         self.constant_lambert
     }
 
+    /// Indices of refraction the energy tables will be asked for.
+    pub(super) fn etas(&self) -> &[f32] {
+        &self.etas
+    }
+
+    /// Normals of closures that do not share one.
+    pub(super) fn normals(&self) -> &Normals {
+        &self.normals
+    }
+
     /// True when there is no lobe but Lambert's.
     pub(super) fn is_plain(&self) -> bool {
         self.closures.is_empty()
@@ -329,8 +315,8 @@ impl PreparedMaterial {
 
     /// True when something of it is as bright from everywhere. Its normal stays as it is, for all of its lobes.
     fn is_in_part_diffuse(&self) -> bool {
-        let is_diffuse = |closure: &PreparedClosure| closure.classes().intersects(LobeSet::LAMBERT);
-        !self.lambert.is_black() || self.closures.iter().any(|(_, closure)| is_diffuse(closure))
+        let is_diffuse = |part: &Part| part.closure.classes().intersects(LobeSet::LAMBERT);
+        !self.lambert.is_black() || self.closures.iter().any(is_diffuse)
     }
 
     /// See [`Bsdf::specular_tint`].
@@ -355,6 +341,15 @@ impl PreparedMaterial {
 }
 
 impl<'a> MaterialRef<'a> {
+    /// The material of a surface that was turned.
+    pub(super) fn turned(self, rotation: Quat) -> Self {
+        if self.normals.is_shared() {
+            return self;
+        }
+        let normals = self.normals.turned(rotation);
+        Self::Own(Arc::new(PreparedMaterial { normals, ..(*self).clone() }))
+    }
+
     #[inline]
     pub(super) fn bsdf(self, wo: Vec3, ng: Vec3, ns: Vec3) -> Bsdf<'a> {
         let material: &PreparedMaterial = &self;
@@ -368,133 +363,21 @@ impl<'a> MaterialRef<'a> {
         if !material.lambert.is_black() {
             lobes.push(Lobe::lambert(material.lambert, 0));
         }
-        for (slot, (weight, closure)) in (1..).step_by(principled::LOBES).zip(&material.closures) {
-            emission += closure.push(&mut lobes, *weight, frame.entering, cos, slot);
+        for (slot, part) in (1..).step_by(principled::LOBES).zip(&material.closures) {
+            let Part { weight, closure, normals } = part;
+            if normals.base == 0 {
+                emission += closure.push(&mut lobes, *weight, frame.entering, Layers::all(cos), slot);
+            } else {
+                let (first, cos) = (lobes.len(), material.normals.cosines(*normals, wo, &frame));
+                emission += closure.push(&mut lobes, *weight, frame.entering, cos, slot);
+                for lobe in &mut lobes[first..] {
+                    lobe.normal = principled::layer(*normals, lobe.slot - slot);
+                }
+            }
         }
         if material.left_out.lobes != LobeSet::EMPTY {
             lobes.retain(|lobe: &mut Lobe| !material.left_out.lobes.intersects(lobe.class));
         }
         Bsdf { material: self, wo, lobes, emission, transparency, frame }
-    }
-}
-
-impl PreparedClosure {
-    /// Adds the lobes towards a viewer at `cos` from the normal; returns the radiance emitted towards it.
-    fn push(&self, lobes: &mut super::LobeList, weight: Rgb, entering: bool, cos: f32, slot: u8) -> Rgb {
-        match self {
-            Self::Glossy { color, rough } => {
-                reflection::push_constant(lobes, weight, *color, *rough, cos, slot);
-            }
-            Self::Glass(glass) => glass.push(lobes, weight, entering, cos, slot),
-            Self::Refraction { rough, ior } => {
-                let eta = if entering { *ior } else { 1.0 / ior };
-                dielectric::push_refraction(lobes, weight, *rough, eta, cos, slot);
-            }
-            Self::Translucent => lobes.push(Lobe::translucent(weight, slot)),
-            Self::Sheen { roughness } => lobes.push(Lobe::sheen(weight, *roughness, cos, slot)),
-            Self::Principled(principled) => {
-                let seen = principled.push(lobes, weight, entering, cos, slot);
-                return weight * seen * principled.emission;
-            }
-        }
-        Rgb::BLACK
-    }
-
-    /// True when what is emitted below a coat depends on the direction.
-    fn dims_its_emission(&self) -> bool {
-        matches!(self, Self::Principled(principled) if principled.dims_its_emission())
-    }
-
-    fn classes(&self) -> LobeSet {
-        match self {
-            Self::Glossy { rough, .. } => rough.reflection_class(),
-            Self::Glass(glass) => glass.classes(),
-            Self::Refraction { rough, ior } => super::lobe::transmission_class(rough.alpha, *ior),
-            Self::Translucent => LobeSet::TRANSLUCENT,
-            Self::Sheen { .. } => LobeSet::DIFFUSE,
-            Self::Principled(principled) => principled.classes(),
-        }
-    }
-
-    /// True when light is refracted.
-    fn transmits(&self) -> bool {
-        match self {
-            Self::Glossy { .. } | Self::Translucent | Self::Sheen { .. } => false,
-            Self::Glass(_) | Self::Refraction { .. } => true,
-            Self::Principled(principled) => principled.transmits(),
-        }
-    }
-
-    fn rough_tint(&self) -> Rgb {
-        match self {
-            Self::Glossy { color, rough } if rough.reflection_class() == LobeSet::ROUGH => *color,
-            Self::Glass(glass) if glass.rough.reflection_class() == LobeSet::ROUGH => {
-                glass.f0 * glass.reflection_tint
-            }
-            Self::Principled(principled) => principled.rough_tint(),
-            _ => Rgb::BLACK,
-        }
-    }
-
-    fn etas(&self) -> impl Iterator<Item = f32> {
-        let own = match self {
-            Self::Glass(glass) => Some(glass.ior),
-            Self::Refraction { ior, .. } => Some(*ior),
-            _ => None,
-        };
-        let principled = if let Self::Principled(p) = self { Some(p.etas()) } else { None };
-        own.into_iter().chain(principled.into_iter().flatten())
-    }
-}
-
-/// Most lobes `closure` can make besides the merged Lambert lobe.
-fn most_lobes(closure: &ClosureRecord) -> usize {
-    match closure {
-        ClosureRecord::Glossy { .. }
-        | ClosureRecord::Refraction { .. }
-        | ClosureRecord::Translucent { .. }
-        | ClosureRecord::Sheen { .. } => 1,
-        ClosureRecord::Glass { .. } => 2,
-        ClosureRecord::Principled(_) => principled::LOBES,
-        _ => 0,
-    }
-}
-
-/// All materials of a scene, by their index there.
-#[derive(Debug, Default)]
-pub struct MaterialTable {
-    materials: Vec<PreparedMaterial>,
-    /// Values that had to be changed, by material.
-    pub problems: Vec<Problem>,
-}
-
-impl MaterialTable {
-    /// Prepares `materials`, and the energy tables they need (some 20 ms the first time an index of refraction is met).
-    #[must_use]
-    pub fn build(materials: &[Material]) -> Self {
-        let mut problems = Vec::new();
-        let materials: Vec<_> = materials.iter().map(|m| PreparedMaterial::new(m, &mut problems)).collect();
-        let needs_tables =
-            |m: &PreparedMaterial| !m.closures.is_empty() || m.varying().is_some_and(|v| !v.is_lambert());
-        if materials.iter().any(needs_tables) {
-            energy_table::prepare(&materials.iter().flat_map(|m| &m.etas).copied().collect::<Vec<_>>());
-        }
-        if materials.iter().filter_map(PreparedMaterial::varying).any(Varying::bends_differently) {
-            energy_table::prepare_all();
-        }
-        Self { materials, problems }
-    }
-
-    /// The materials in order.
-    pub fn iter(&self) -> impl Iterator<Item = &PreparedMaterial> {
-        self.materials.iter()
-    }
-}
-
-impl Index<usize> for MaterialTable {
-    type Output = PreparedMaterial;
-
-    fn index(&self, index: usize) -> &PreparedMaterial {
-        &self.materials[index]
     }
 }

@@ -3,6 +3,7 @@
 
 use super::dielectric::Glass;
 use super::lobe::Lobe;
+use super::normals::Layers;
 use super::reflection::{Layer, Metal, Roughness};
 use super::{LobeList, LobeSet, fresnel};
 use crate::color::Rgb;
@@ -13,6 +14,19 @@ const NEGLIGIBLE: f32 = 1e-5;
 
 /// Most lobes one Principled BSDF makes.
 pub(super) const LOBES: usize = 7;
+
+/// Which of its lobes, by their slots, are coat and sheen.
+const COAT: u8 = 0;
+const SHEEN: u8 = 6;
+
+/// What of the `layers` belongs to the lobe of a slot.
+pub(super) const fn layer(layers: Layers<u8>, slot: u8) -> u8 {
+    match slot {
+        COAT => layers.coat,
+        SHEEN => layers.sheen,
+        _ => layers.base,
+    }
+}
 
 /// A Principled BSDF without its alpha, its parameters checked and converted.
 #[derive(Clone, Debug)]
@@ -122,6 +136,11 @@ impl Principled {
         [self.metallic, rest * self.transmission, rest * (1.0 - self.transmission)]
     }
 
+    /// How far the sheen's normal is turned to the coat's; `None` without sheen.
+    pub(super) fn sheen_on_coat(&self) -> Option<f32> {
+        self.sheen.is_some().then(|| self.coat.as_ref().map_or(0.0, |coat| coat.weight))
+    }
+
     /// Classes that can occur.
     pub(super) fn classes(&self) -> LobeSet {
         let mut set = if self.sheen.is_some() { LobeSet::DIFFUSE } else { LobeSet::EMPTY };
@@ -170,10 +189,18 @@ impl Principled {
         tint
     }
 
-    /// Adds the lobes, and returns what part of the emission leaves towards the viewer at `cos` from the normal.
-    pub(super) fn push(&self, lobes: &mut LobeList, weight: Rgb, entering: bool, cos: f32, slot: u8) -> Rgb {
-        let below_sheen = self.push_sheen(lobes, weight, cos, slot + 6);
-        let below_coat = self.push_coat(lobes, weight * below_sheen, cos, slot) * below_sheen;
+    /// Adds the lobes, and returns what part of the emission leaves towards the viewer at `cos` from the normals.
+    pub(super) fn push(
+        &self,
+        lobes: &mut LobeList,
+        weight: Rgb,
+        entering: bool,
+        cos: Layers<f32>,
+        slot: u8,
+    ) -> Rgb {
+        let below_sheen = self.push_sheen(lobes, weight, cos.sheen, slot + SHEEN);
+        let below_coat = self.push_coat(lobes, weight * below_sheen, cos.coat, slot + COAT) * below_sheen;
+        let cos = cos.base;
         let [metal, glass, base] = self.shares();
         let weight = weight * below_coat;
         if metal > NEGLIGIBLE {

@@ -53,6 +53,7 @@ pub(super) fn push_constant(
         albedo: weight * table.total,
         class: rough.reflection_class(),
         slot,
+        normal: 0,
     });
 }
 
@@ -83,6 +84,7 @@ impl Metal {
             albedo: weight * single,
             class: rough.reflection_class(),
             slot,
+            normal: 0,
         });
     }
 }
@@ -123,6 +125,7 @@ impl Layer {
             albedo: weight * reflected,
             class: rough.reflection_class(),
             slot,
+            normal: 0,
         });
         // Cycles takes the first, an estimate. It makes light from nothing where it is the smaller: by 1.5 % at most, at
         // cosines below 0.05, but by half for indices below 1.

@@ -11,7 +11,7 @@
 use std::f32::consts::PI;
 
 use super::lobe::{Fresnel, Shape};
-use super::{Bsdf, LobeSet, fresnel};
+use super::{Bsdf, LobeSet, ShadingFrame, fresnel};
 use crate::color::Rgb;
 
 /// Half vectors shorter than this (squared) belong to directions that are opposite but for rounding.
@@ -23,28 +23,32 @@ impl Bsdf<'_> {
     #[must_use]
     #[inline(always)]
     pub fn eval_rough<const N: usize>(&self, wi: &[[f32; N]; 3]) -> [[f32; N]; 3] {
-        let (wo, ns, ng) = (self.wo, self.frame.ns, self.frame.ng);
-        let cos_o = wo.dot(ns);
         let mut out = [[0.0; N]; 3];
-        if cos_o <= 0.0 {
+        if self.wo.dot(self.frame.ns) <= 0.0 {
             return out;
         }
-        let (mut cos_i, mut half) = ([0.0; N], [0.0; N]);
-        let mut above = [false; N];
+        let mut half = [0.0; N];
         for i in 0..N {
-            let [x, y, z] = [wi[0][i], wi[1][i], wi[2][i]];
-            cos_i[i] = x * ns.x + y * ns.y + z * ns.z;
-            above[i] = (cos_i[i] > 0.0) & (x * ng.x + y * ng.y + z * ng.z > 0.0);
-            let h = [x + wo.x, y + wo.y, z + wo.z];
+            let h = [wi[0][i] + self.wo.x, wi[1][i] + self.wo.y, wi[2][i] + self.wo.z];
             half[i] = at_least(h[0] * h[0] + h[1] * h[1] + h[2] * h[2], LEAST_HALF);
         }
         for lobe in self.lobes(LobeSet::ROUGH) {
             let Shape::Reflection { alpha } = lobe.shape else { continue };
-            let mut values = microfacets(alpha, cos_o, &cos_i, &half);
+            let own = (lobe.normal != 0).then(|| self.own_frame(lobe));
+            let ShadingFrame { ns, ng, .. } = *own.as_ref().unwrap_or(&self.frame);
+            let mut cos_i = [0.0; N];
+            let mut above = [false; N];
+            for i in 0..N {
+                let [x, y, z] = [wi[0][i], wi[1][i], wi[2][i]];
+                cos_i[i] = x * ns.x + y * ns.y + z * ns.z;
+                above[i] = (cos_i[i] > 0.0) & (x * ng.x + y * ng.y + z * ng.z > 0.0);
+            }
+            let mut values = microfacets(alpha, self.wo.dot(ns), &cos_i, &half);
             for i in 0..N {
                 values[i] = if above[i] { values[i] } else { 0.0 };
             }
-            let weight = [0, 1, 2].map(|c| lobe.weight.0[c] / lobe.gain.0[c]);
+            let leaning = own.map_or(1.0, |own| own.irradiance_factor(self.wo));
+            let weight = [0, 1, 2].map(|c| lobe.weight.0[c] / lobe.gain.0[c] * leaning);
             add_reflected(&mut out, lobe.fresnel, weight, &values, &half);
         }
         out

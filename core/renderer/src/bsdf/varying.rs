@@ -1,29 +1,30 @@
 //! Materials whose closures differ from point to point.
 
+use glam::Vec3;
 use smallvec::SmallVec;
 
 use super::PreparedMaterial;
+use super::normals::Assignment;
 use crate::color::Rgb;
 use crate::scene::MaterialProgram;
 use crate::scene::record::{ClosureRecord, Input, InputMut, WeightedClosure};
-use crate::shader::{Point, Registers, Texture, Value};
+use crate::shader::{Point, Register, Registers, Texture};
 
 /// Closures, and the program that computes those of their inputs that vary.
 #[derive(Clone, Debug)]
 pub struct Varying {
     closures: SmallVec<[WeightedClosure; 2]>,
     program: MaterialProgram,
+    normals: Assignment,
     is_lambert: bool,
 }
 
 impl Varying {
     pub(super) fn new(closures: &[WeightedClosure], program: &MaterialProgram) -> Self {
         let is_diffuse = |part: &WeightedClosure| matches!(part.closure, ClosureRecord::Diffuse { .. });
-        Self {
-            closures: closures.into(),
-            program: program.clone(),
-            is_lambert: program.normal.is_none() && closures.iter().all(is_diffuse),
-        }
+        let normals = Assignment::new(closures, program);
+        let is_lambert = normals.registers[..] == [None] && closures.iter().all(is_diffuse);
+        Self { closures: closures.into(), program: program.clone(), normals, is_lambert }
     }
 
     /// True where the material is nothing but a Lambert reflector everywhere, its shading normal the surface's own.
@@ -50,16 +51,17 @@ impl Varying {
         albedo.sum::<Rgb>().map(|c| c.min(1.0))
     }
 
-    /// The material as it is where the program gave `registers`.
+    /// The material as it is where the program gave `registers` and its normals are `normals`.
     #[must_use]
-    pub(super) fn material(&self, registers: &Registers) -> PreparedMaterial {
-        PreparedMaterial::at_hit(&self.closures_with(registers))
+    pub(super) fn material(&self, registers: &Registers, normals: &[Vec3]) -> PreparedMaterial {
+        PreparedMaterial::at_hit(&self.closures_with(registers), self.normals.at(normals))
     }
 
-    /// The shading normal, where the program computes one.
+    /// The results that are shading normals, the surface's own first; `None` is the mesh's. Where there are several, closures
+    /// have others than the surface, and the shading normal of their [`Bsdf`](super::Bsdf) must be the geometric one.
     #[must_use]
-    pub fn normal(&self, registers: &Registers) -> Option<Value> {
-        self.program.normal.map(|register| registers[register as usize])
+    pub fn normals(&self) -> &[Option<Register>] {
+        &self.normals.registers
     }
 
     fn closures_with(&self, registers: &Registers) -> SmallVec<[WeightedClosure; 2]> {

@@ -35,6 +35,15 @@ impl Costs {
         }
     }
 
+    /// All of it, as the cost of one effect.
+    #[must_use]
+    pub fn all_for(&self, effect: Effect) -> Self {
+        let mut all = Self::default();
+        all.clocked[effect as usize] = self.clocked.iter().sum();
+        all.rays[effect as usize] = self.rays.iter().sum();
+        all
+    }
+
     /// Rays traced for an effect alone.
     #[must_use]
     pub const fn rays(&self, effect: Effect) -> u64 {

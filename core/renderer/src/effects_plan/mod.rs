@@ -5,7 +5,7 @@
 //! the eye belongs to one of them, or meets the eye through mirrors and glass alone and is always computed (decision 7).
 //! Others are **parts of the scene** that paths begin or pass at: they are left out of the materials and of the world,
 //! and all paths with them. Depth of field is a part of the camera, which is a pinhole without it; without motion blur all
-//! stands still as in the middle of the shutter's time.
+//! stands still as in the middle of the shutter's time; shadow catchers are ordinary objects where they catch none.
 
 mod costs;
 
@@ -17,7 +17,7 @@ use crate::stats::EffectStats;
 pub use costs::{Costs, Meter, Owner};
 
 /// Number of effects.
-pub const EFFECTS: usize = 10;
+pub const EFFECTS: usize = 11;
 
 /// One effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +42,8 @@ pub enum Effect {
     DepthOfField,
     /// Blur of what moves while the shutter is open.
     MotionBlur,
+    /// Shadows on catchers, without the catchers.
+    ShadowCatcher,
 }
 
 impl Effect {
@@ -57,6 +59,7 @@ impl Effect {
         Self::AlphaTransparency,
         Self::DepthOfField,
         Self::MotionBlur,
+        Self::ShadowCatcher,
     ];
 
     /// Name in settings and statistics.
@@ -73,6 +76,7 @@ impl Effect {
             Self::AlphaTransparency => "alpha_transparency",
             Self::DepthOfField => "depth_of_field",
             Self::MotionBlur => "motion_blur",
+            Self::ShadowCatcher => "shadow_catcher",
         }
     }
 
@@ -80,7 +84,7 @@ impl Effect {
     #[must_use]
     pub const fn pass(self) -> &'static str {
         match self {
-            Self::DirectLight | Self::DepthOfField => "gather",
+            Self::DirectLight | Self::DepthOfField | Self::ShadowCatcher => "gather",
             _ => "photon_pass, gather",
         }
     }
@@ -105,6 +109,7 @@ impl Effect {
             Self::AlphaTransparency => settings.alpha_transparency,
             Self::DepthOfField => settings.depth_of_field,
             Self::MotionBlur => settings.motion_blur,
+            Self::ShadowCatcher => settings.shadow_catcher,
         }
     }
 }
@@ -168,6 +173,8 @@ pub struct EffectsPlan {
     pub has_casters: bool,
     /// Rays have times, and things are where they are then.
     pub motion_blur: bool,
+    /// The camera sees shadows in place of catchers.
+    pub shadow_catcher: bool,
     /// Gather rays have something to find.
     pub gathers: bool,
 }
@@ -189,6 +196,7 @@ impl EffectsPlan {
         let mut planned = path_classes(scene, &used, settings, materials, world);
         planned.extend(parts);
         planned.extend([depth_of_field(scene, settings), motion_blur(scene, settings)]);
+        planned.push(shadow_catcher(scene, settings));
         let computed = |effect: Effect| planned[effect as usize].is_computed();
         let lobes = |effect, set| if computed(effect) { set } else { LobeSet::EMPTY };
         let reads = lobes(Effect::IndirectDiffuse, LobeSet::DIFFUSE | LobeSet::TRANSLUCENT)
@@ -202,6 +210,7 @@ impl EffectsPlan {
             transparency: computed(Effect::AlphaTransparency),
             depth_of_field: computed(Effect::DepthOfField),
             motion_blur: computed(Effect::MotionBlur) && moves(scene),
+            shadow_catcher: computed(Effect::ShadowCatcher) && scene.catcher().is_some(),
             gathers: planned.iter().any(|line| {
                 line.is_computed() && (line.effect.is_path_class() || line.effect == Effect::MirrorsAndGlass)
             }),
@@ -365,6 +374,13 @@ fn motion_blur(scene: &Scene, settings: &EffectSettings) -> Planned {
         format!("'{}' {what}", object.name)
     });
     let because = if scene.camera.moves() { Some(format!("'{}' moves", scene.camera.name)) } else { object };
+    Planned { effect, switch: effect.switch(settings), because }
+}
+
+/// Plans what the camera sees of catchers.
+fn shadow_catcher(scene: &Scene, settings: &EffectSettings) -> Planned {
+    let effect = Effect::ShadowCatcher;
+    let because = scene.catcher().map(|object| format!("'{}' is a shadow catcher", object.name));
     Planned { effect, switch: effect.switch(settings), because }
 }
 

@@ -7,17 +7,20 @@
 //! Passes are kept in two halves that have nothing in common: how far the halves differ tells how far their mean is from
 //! the truth.
 
+mod catcher;
 mod error;
 mod filter;
 mod sums;
 
-use std::sync::{Mutex, MutexGuard, PoisonError, RwLock};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError, RwLock};
 
 use rayon::prelude::*;
 
 use crate::color::Rgb;
 use crate::settings::FilmSettings;
 use crate::stats::PictureError;
+pub use catcher::CatcherSample;
+use catcher::{CatcherSums, Catchers};
 use filter::Filter;
 use sums::{CHANNELS, Sums};
 
@@ -79,6 +82,8 @@ pub struct Film {
     nonfinite: Mutex<u64>,
     /// Where the light is known to be wrong; empty where nothing is.
     audit: RwLock<Vec<f32>>,
+    /// What is kept where there are shadow catchers, and only there.
+    catchers: OnceLock<Catchers>,
 }
 
 /// The samples of a pass in the order of the picture's pixels, ready to be added to the pixels around them.
@@ -115,6 +120,7 @@ impl Film {
             halves: RwLock::new([black(), black()]),
             nonfinite: Mutex::new(0),
             audit: RwLock::default(),
+            catchers: OnceLock::new(),
         }
     }
 
@@ -154,6 +160,25 @@ impl Film {
         *lock(&self.pass[tile]) = samples;
     }
 
+    /// Makes room for what shadow catchers leave; whether the film is transparent behind them.
+    pub fn expect_catchers(&self, is_transparent: bool) {
+        self.catchers
+            .get_or_init(|| Catchers::new(is_transparent, self.tiles.len(), self.width * self.height));
+    }
+
+    /// Memory (bytes) that shadow catchers take, where there are any.
+    #[must_use]
+    pub const fn catcher_bytes_for(width: u32, height: u32) -> u64 {
+        width as u64 * height as u64 * Catchers::BYTES_OF_A_PIXEL
+    }
+
+    /// As [`Film::take`], for what was found of shadow catchers.
+    pub fn take_catchers(&self, tile: usize, samples: Vec<CatcherSample>) {
+        if let Some(catchers) = self.catchers.get() {
+            *lock(&self.nonfinite) += catchers.take(tile, samples);
+        }
+    }
+
     /// Adds the samples of the pass, of `gather_rays` rays a pixel, to one half of the picture (0 or 1). A pass that was
     /// cut short adds what it has.
     pub fn finish_pass(&self, gather_rays: u32, half: usize) {
@@ -162,9 +187,12 @@ impl Film {
         let mut halves = self.halves.write().unwrap_or_else(PoisonError::into_inner);
         halves[half].par_chunks_mut(self.width.max(1)).enumerate().for_each(|(y, row)| {
             for (x, sums) in row.iter_mut().enumerate() {
-                sums.add(&self.around(&spread, [x, y]), gather_rays as f32);
+                sums.add(&self.around(&spread.channels, &spread.weights, [x, y]), gather_rays as f32);
             }
         });
+        if let Some(catchers) = self.catchers.get() {
+            catchers.finish_pass(self, &spread, gather_rays as f32, half);
+        }
         self.pass.iter().for_each(|tile| lock(tile).clear());
     }
 
@@ -177,16 +205,26 @@ impl Film {
     /// Red, green, blue (radiance) and alpha of every pixel, rows from the bottom.
     #[must_use]
     pub fn combined(&self) -> Vec<f32> {
-        self.read(|s| {
-            let [r, g, b] = (s.combined() * self.exposure).0;
-            [r, g, b, s.alpha()]
+        let is_transparent = self.catchers.get().is_some_and(|catchers| catchers.is_transparent);
+        self.read(|s, caught| {
+            let (light, alpha) =
+                caught.map_or_else(|| (s.combined(), s.alpha()), |caught| caught.composed(s, is_transparent));
+            let [r, g, b] = (light * self.exposure).0;
+            [r, g, b, alpha]
         })
     }
 
     /// Light that was scattered at least twice: red, green and blue of every pixel, rows from the bottom.
     #[must_use]
     pub fn indirect(&self) -> Vec<f32> {
-        self.read(|s| (s.indirect() * self.exposure).0)
+        self.read(|s, _| (s.indirect() * self.exposure).0)
+    }
+
+    /// Share of their light that other objects leave to shadow catchers: red, green and blue of every pixel, rows from the
+    /// bottom; 1 where there is no catcher.
+    #[must_use]
+    pub fn shadow_catcher(&self) -> Vec<f32> {
+        self.read(|s, caught| caught.map_or(Rgb::WHITE, |caught| caught.shadow(s)).0)
     }
 
     /// Standard error of the combined picture, one value per pixel (root mean square of the channels), rows from the
@@ -228,23 +266,33 @@ impl Film {
         error::of_picture(a, b, self.width)
     }
 
-    fn read<const N: usize>(&self, value: impl Fn(&Sums) -> [f32; N]) -> Vec<f32> {
+    fn read<const N: usize>(&self, value: impl Fn(&Sums, Option<CatcherSums>) -> [f32; N]) -> Vec<f32> {
+        let catchers = self.catchers.get();
         let halves = self.halves.read().unwrap_or_else(PoisonError::into_inner);
         let [a, b] = &*halves;
         if a.iter().any(Sums::is_known) {
-            return a.iter().zip(b).flat_map(|(a, b)| value(&a.with(b))).collect();
+            let caught = catchers.map(Catchers::halves);
+            let of_pixel = |i: usize| caught.as_ref().map(|halves| halves[0][i].with(&halves[1][i]));
+            let pixels = a.iter().zip(b).enumerate();
+            return pixels.flat_map(|(i, (a, b))| value(&a.with(b), of_pixel(i))).collect();
         }
         drop(halves);
-        let mut pixels = vec![value(&Sums::default()); self.width * self.height];
-        for (rect, tile) in self.tiles.iter().zip(&self.pass) {
+        let mut pixels = vec![value(&Sums::default(), None); self.width * self.height];
+        for (index, (rect, tile)) in self.tiles.iter().zip(&self.pass).enumerate() {
             for (i, sample) in lock(tile).iter().enumerate().filter(|(_, sample)| sample.taken) {
-                let (x, y) = (i % rect.width as usize, i / rect.width as usize);
-                let mut sums = Sums::default();
-                sums.add(&sample.channels(), 1.0);
-                pixels[(rect.y as usize + y) * self.width + rect.x as usize + x] = value(&sums);
+                let (mut sums, channels) = (Sums::default(), sample.channels());
+                sums.add(&channels, 1.0);
+                let caught = catchers.map(|catchers| catchers.of_sample(index, i, &channels));
+                pixels[self.index_in(rect, i)] = value(&sums, caught);
             }
         }
         pixels.into_iter().flatten().collect()
+    }
+
+    /// Index in the picture of pixel `index` of a tile.
+    const fn index_in(&self, rect: &TileRect, index: usize) -> usize {
+        let (x, y) = (index % rect.width as usize, index / rect.width as usize);
+        (rect.y as usize + y) * self.width + rect.x as usize + x
     }
 
     /// Lays out the samples of the pass that is under way.
@@ -280,16 +328,16 @@ impl Film {
 
     /// Sum of the samples that the filter of a pixel reaches.
     #[inline]
-    fn around(&self, spread: &Spread, [x, y]: [usize; 2]) -> [f32; CHANNELS] {
+    fn around<const N: usize>(&self, channels: &[[f32; N]], weights: &[f32], [x, y]: [usize; 2]) -> [f32; N] {
         let (reach, span) = (self.filter.reach(), self.span());
-        let mut sum = [0.0; CHANNELS];
+        let mut sum = [0.0; N];
         for ny in y.saturating_sub(reach)..(y + reach + 1).min(self.height) {
             for nx in x.saturating_sub(reach)..(x + reach + 1).min(self.width) {
                 let index = ny * self.width + nx;
-                let weights = &spread.weights[index * 2 * span..][..2 * span];
+                let weights = &weights[index * 2 * span..][..2 * span];
                 let weight = weights[x + reach - nx] * weights[span + y + reach - ny];
-                let channels = &spread.channels[index];
-                for c in 0..CHANNELS {
+                let channels = &channels[index];
+                for c in 0..N {
                     sum[c] += weight * channels[c];
                 }
             }

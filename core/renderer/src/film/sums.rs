@@ -57,6 +57,7 @@ impl Sums {
     }
 }
 
-fn inverse(weight: f32) -> f32 {
+/// 1 over a weight, 0 where there is none.
+pub(super) fn inverse(weight: f32) -> f32 {
     if weight > 0.0 { 1.0 / weight } else { 0.0 }
 }

@@ -18,14 +18,12 @@ use crate::settings::GatherSampling;
 
 use super::Gatherer;
 use super::camera::{CameraRay, camera_ray};
+use super::catcher::Caught;
 use super::deferred::Traces;
-use super::direct::{ShadowRay, Shares, lambert_shadow_ray, shadow_ray, transmittance};
+use super::direct::{ShadowRay, lambert_shadow_ray, shadow_ray, transmittance};
 use super::lambert::LambertLanes;
 use super::path::Sampled;
 use super::vertex::{GatherRay, Vertex, rotate};
-
-/// One block in so many is clocked, to tell what each effect costs.
-const CLOCKED: u64 = 64;
 
 /// Tells a pixel's points on lamps from its points in the pixel.
 const LAMP_SEED: u32 = 0x9E37_79B1;
@@ -34,14 +32,16 @@ const LAMP_SEED: u32 = 0x9E37_79B1;
 pub(super) struct Block<'a, 'g, E: Estimator> {
     pub(super) gatherer: &'g Gatherer<'a, E>,
     /// Number of the camera sample.
-    sample: u32,
+    pub(super) sample: u32,
     pub(super) keys: [u64; LANES],
-    seeds: PixelSeeds<LANES>,
+    pub(super) seeds: PixelSeeds<LANES>,
     /// Camera samples on constant Lambert surfaces, and on all others.
     pub(super) lambert: LambertLanes,
     pub(super) vertices: [Option<Box<Vertex<'a>>>; LANES],
     /// Whether there are such others.
-    has_vertices: bool,
+    pub(super) has_vertices: bool,
+    /// Those that met a shadow catcher.
+    pub(super) caught: [Option<Caught>; LANES],
     pub(super) samples: [PixelSample; LANES],
     pub(super) packet: Packet,
     /// How far from the lens each camera ray starts.
@@ -62,6 +62,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             lambert: LambertLanes::default(),
             vertices: [const { None }; LANES],
             has_vertices: false,
+            caught: [None; LANES],
             samples: [PixelSample::default(); LANES],
             packet: Packet::default(),
             start: [0.0; LANES],
@@ -79,8 +80,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     #[inline(always)]
     pub(super) fn run(&mut self, x: u32, y: u32, tile: TileRect, out: &mut [PixelSample]) {
         let deferred = self.traces.deferred.len();
-        let key = u64::from(self.sample) << 48 | u64::from(y) << 24 | u64::from(x);
-        self.traces.meter.begin(hash(u64::from(self.gatherer.seed), key).is_multiple_of(CLOCKED));
+        self.traces.meter.begin(self.gatherer.is_clocked(self.sample, x, y));
         self.start(x, y);
         if self.lambert.any() || self.has_vertices {
             self.light();
@@ -111,6 +111,9 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         self.lambert.clear();
         self.has_vertices = false;
         self.others = [None; LANES];
+        if g.lit.plan.shadow_catcher {
+            self.caught = [None; LANES];
+        }
         let mut seeds = [0; LANES];
         for (lane, seed) in seeds.iter_mut().enumerate() {
             let (px, py) = (x + lane as u32 % BLOCK, y + lane as u32 / BLOCK);
@@ -185,23 +188,16 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         self.lambert.put(lane, p, frame.ng, frame.ns, albedo, ray.time);
         self.lambert.sets[lane] = g.lit.receiver_sets(hit.object);
         self.samples[lane].alpha = 1.0;
+        if g.is_catcher(&hit) {
+            self.caught[lane] = Some(g.behind_catcher(ray));
+        }
         true
     }
 
     fn follow_camera(&mut self, lane: usize, mut ray: Ray, hit: Option<Hit>) {
         let g = self.gatherer;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.sample) << 16 | 1));
-        let (kind, width) = (visibility::CAMERA, g.camera_width.after(self.start[lane]));
-        let mut sampled = Sampled {
-            pdf: None,
-            shares: Shares::EVEN,
-            kind,
-            light: None,
-            lit_side: None,
-            sets: u32::MAX,
-            width,
-            mapped: Rgb::WHITE,
-        };
+        let mut sampled = Sampled::by_camera(g.camera_width.after(self.start[lane]));
         let owner = self.traces.meter.owner();
         let (mut first, mut throughput) = (Some(hit), Rgb::WHITE);
         let transparent_film = g.lit.accel.scene().world.film_transparent;
@@ -217,6 +213,9 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
                 sample.alpha = 1.0 - met.hole;
             }
             let Some(surface) = end else { break };
+            if depth == 0 && g.is_catcher(&surface.hit) {
+                self.caught[lane] = Some(g.caught(&ray, &surface, &met));
+            }
             throughput *= met.through;
             if surface.bsdf.has(LobeSet::NON_DELTA) {
                 self.vertices[lane] = Some(Box::new(Vertex { surface, throughput }));
@@ -239,7 +238,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
 
     /// Direct light: shadow rays of the camera sample.
     #[inline(always)]
-    fn light(&mut self) {
+    pub(super) fn light(&mut self) {
         let g = self.gatherer;
         if !(g.lit.plan.direct && g.lit.plan.light_samples) {
             return;
@@ -294,7 +293,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
 
     /// Gather rays of the camera sample.
     #[inline(always)]
-    fn gather(&mut self) {
+    pub(super) fn gather(&mut self) {
         let plan = &self.gatherer.lit.plan;
         if !plan.gathers {
             return;

@@ -10,6 +10,7 @@
 mod audit;
 mod block;
 mod camera;
+mod catcher;
 mod caustics;
 mod convergence;
 mod deferred;
@@ -36,7 +37,7 @@ use crate::caustic_map::CausticMap;
 use crate::color::Rgb;
 use crate::effects_plan::Costs;
 use crate::error::RenderError;
-use crate::estimator::Estimator;
+use crate::estimator::{Estimator, Path};
 use crate::film::{BLOCK, Film, PixelSample};
 use crate::lit_scene::LitScene;
 use crate::progress::Progress;
@@ -49,6 +50,7 @@ use crate::stats::{RayCounts, StoppedBy};
 pub use audit::Auditor;
 use block::Block;
 use camera::camera_width;
+use catcher::CatcherTile;
 use convergence::Convergence;
 use deferred::{OpenTile, Traces};
 use direct::Shares;
@@ -58,6 +60,9 @@ pub use pilot::{Landings, Seen, finds, landings};
 pub use pyramid_lookup::PyramidLookup;
 pub use readings::readings;
 pub use stop::Stop;
+
+/// One block in so many is clocked, to tell what each effect costs.
+const CLOCKED: u64 = 64;
 
 /// What every gather ray needs to know.
 pub struct Gatherer<'a, E> {
@@ -201,6 +206,12 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         self.lit.accel.scene().objects[hit.object as usize].is_holdout()
     }
 
+    /// True for the blocks, at (x, y) of a pass, whose work is clocked to tell what each effect costs.
+    fn is_clocked(&self, sample: u32, x: u32, y: u32) -> bool {
+        let key = u64::from(sample) << 48 | u64::from(y) << 24 | u64::from(x);
+        hash(u64::from(self.seed), key).is_multiple_of(CLOCKED)
+    }
+
     /// What a gather ray of density `pdf` stands for (sr).
     #[inline(always)]
     fn solid_angle(&self, pdf: f32) -> f32 {
@@ -239,12 +250,14 @@ pub struct Gathered {
 }
 
 /// Renders passes into `film` until `stop` is content. The passes are gathered by one and the other of `gatherers` (which
-/// read different photons) by turns, and fill the film's halves by turns.
+/// read different photons) by turns, and fill the film's halves by turns. `without` gathers light on shadow catchers in the
+/// scene without other objects.
 ///
 /// # Errors
 /// [`RenderError::Cancelled`]; what is finished is in the film.
-pub fn run<E: Estimator>(
-    gatherers: &[Gatherer<'_, E>; SETS],
+pub fn run<'a, E: Estimator>(
+    gatherers: &[Gatherer<'a, E>; SETS],
+    without: Option<&Gatherer<'a, Path>>,
     film: &Film,
     stop: Stop,
     progress: &Progress,
@@ -263,7 +276,7 @@ pub fn run<E: Estimator>(
         let sample = gatherer.sample_of_pass(pass);
         let finished = gatherer.pass_in_batches(sample, film, |index| {
             let (rays, costs, open) =
-                instructions.dispatch(TileWork { gatherer, sample, film, index, progress })?;
+                instructions.dispatch(TileWork { gatherer, without, sample, film, index, progress })?;
             let mut counted = counted.lock().unwrap_or_else(PoisonError::into_inner);
             counted.0 += rays;
             counted.1 += costs;
@@ -299,6 +312,8 @@ pub fn run<E: Estimator>(
 /// A tile of a pass, for whichever vector instructions this processor has.
 struct TileWork<'w, 'a, E> {
     gatherer: &'w Gatherer<'a, E>,
+    /// Gathers light on shadow catchers, if there are any.
+    without: Option<&'w Gatherer<'a, Path>>,
     /// Number of the camera sample.
     sample: u32,
     film: &'w Film,
@@ -316,13 +331,23 @@ impl<E: Estimator> pulp::NullaryFnOnce for TileWork<'_, '_, E> {
         let tile = self.film.tiles()[self.index];
         let mut samples = vec![PixelSample::default(); (tile.width * tile.height) as usize];
         let mut block = Block::new(self.gatherer, self.sample);
+        let mut catchers = self.without.map(|without| CatcherTile::new(without, self.sample, tile));
         for y in (tile.y..tile.y + tile.height).step_by(BLOCK as usize) {
             self.progress.check()?;
             for x in (tile.x..tile.x + tile.width).step_by(BLOCK as usize) {
                 block.run(x, y, tile, &mut samples);
+                if let Some(catchers) = &mut catchers {
+                    catchers.light(&mut block, x, y);
+                }
             }
         }
-        let Traces { rays, deferred, meter, audited } = block.finish();
+        let Traces { mut rays, deferred, mut meter, audited } = block.finish();
+        if let Some(catchers) = catchers {
+            let (caught, rays_of_catchers, costs) = catchers.finish();
+            self.film.take_catchers(self.index, caught);
+            rays += rays_of_catchers;
+            meter.costs += costs;
+        }
         if let Some(auditor) = self.gatherer.auditor {
             auditor.take(self.index, audited);
         }

@@ -48,6 +48,20 @@ pub(super) struct Sampled {
 }
 
 impl Sampled {
+    /// A ray from the camera.
+    pub(super) const fn by_camera(width: Width) -> Self {
+        Self {
+            pdf: None,
+            shares: Shares::EVEN,
+            kind: visibility::CAMERA,
+            light: None,
+            lit_side: None,
+            sets: u32::MAX,
+            width,
+            mapped: Rgb::WHITE,
+        }
+    }
+
     fn sight(&self) -> Sight {
         Sight { kind: self.kind, mapped: self.mapped }
     }
@@ -172,6 +186,12 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         });
         meter.back(owner);
         (behind, light)
+    }
+
+    /// Light from outside the scene along a camera ray.
+    pub(super) fn background(&self, ray: &Ray) -> Rgb {
+        let sight = Sampled::by_camera(Width::NONE);
+        self.escaped(sight.receiver(ray.origin), ray.direction, sight)
     }
 
     /// Light from outside the scene.

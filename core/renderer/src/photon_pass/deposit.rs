@@ -28,7 +28,8 @@ impl PhotonSink for PyramidDeposits<'_> {
     #[inline]
     fn land(&self, waiting: &mut Self::Batch, landing: &Landing<'_>) {
         let (surface, flux) = (landing.surface, landing.flux);
-        let deposit = Deposit { set: landing.set, p: surface.p, side: surface.bsdf.frame.side(), flux };
+        let (side, seen) = (surface.bsdf.frame.side(), flux * surface.bsdf.lambert_factor());
+        let deposit = Deposit { set: landing.set, p: surface.p, side, flux: seen };
         if !landing.glossy {
             waiting.push(deposit);
             if waiting.is_full() {

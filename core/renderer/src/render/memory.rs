@@ -4,7 +4,7 @@ use crate::error::RenderError;
 use crate::film::Film;
 use crate::pyramid::{Accumulator, DirectionBins, Layout};
 use crate::scene::Scene;
-use crate::settings::RenderSettings;
+use crate::settings::{RenderSettings, Switch};
 
 const MEBIBYTE: u64 = 1 << 20;
 
@@ -32,12 +32,15 @@ impl Budget {
         }
         let limit = u64::from(settings.render.memory_limit) * MEBIBYTE;
         let [_, _, width, height] = scene.camera.region;
-        let picture = Film::bytes_for(width, height, &settings.film);
+        let catches = settings.effects.shadow_catcher != Switch::Off && scene.catcher().is_some();
+        let caught = if catches { Film::catcher_bytes_for(width, height) } else { 0 };
+        let picture = Film::bytes_for(width, height, &settings.film) + caught;
         let (mut triangles, mut instances) = (0, 0);
         for object in &scene.objects {
-            let count = object.mesh.triangles.len() as u64;
+            let trees = 1 + u64::from(catches && object.is_catcher());
+            let count = object.mesh.triangles.len() as u64 * trees;
             if object.scene_from_mesh.is_some() {
-                instances += 1;
+                instances += trees;
             }
             if object.scene_from_mesh.is_none() || object.moves() {
                 triangles += count;

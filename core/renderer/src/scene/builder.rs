@@ -120,7 +120,7 @@ impl SceneBuilder {
             world_from_object: transform,
             steps: Vec::new(),
             materials,
-            visibility: visible_to & (visibility::ALL | visibility::HOLDOUT),
+            visibility: visible_to & (visibility::ALL | visibility::HOLDOUT | visibility::CATCHER),
             info: ObjectInfo::default(),
             links: ObjectLinks::default(),
         });
@@ -366,11 +366,16 @@ fn checked_material(record: MaterialRecord, textures: usize) -> Result<Material,
             return Err(fault(format!("closure {} has no input {:?}", output.closure, output.input)));
         }
     }
-    let registers = record.outputs.iter().map(|output| output.register).chain(record.normal);
+    if let Some(normal) = record.normals.iter().find(|normal| normal.closure >= closures.len()) {
+        return Err(fault(format!("it has a normal for closure {} of {}", normal.closure, closures.len())));
+    }
+    let normals = record.normals.iter().map(|normal| normal.register).chain(record.normal);
+    let registers = record.outputs.iter().map(|output| output.register).chain(normals);
     if let Some(register) = registers.into_iter().find(|&register| register as usize >= program.len()) {
         return Err(fault(format!("its program has no register {register}")));
     }
-    let program = MaterialProgram { program, outputs: record.outputs, normal: record.normal };
+    let (outputs, normal, normals) = (record.outputs, record.normal, record.normals);
+    let program = MaterialProgram { program, outputs, normal, normals };
     Ok(Material { name, closures, program: Some(program) })
 }
 

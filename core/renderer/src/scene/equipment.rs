@@ -135,7 +135,7 @@ pub(super) fn place_lamp(record: LampRecord, space: &SceneSpace, problems: &mut 
         y_axis: y.as_vec3(),
         axis: -z.as_vec3(),
         stretch: [scales.x, scales.y].map(|length| (length / scales.z) as f32),
-        visibility: record.visibility & visibility::ALL,
+        visibility: record.visibility & (visibility::ALL | visibility::CATCHER),
         casts_shadow: record.casts_shadow,
         links: record.links,
     })

@@ -27,7 +27,7 @@ pub use record::{LampShape, ObjectInfo, Projection, visibility};
 
 use crate::color::Rgb;
 use crate::shader::{Program, Register, Texture};
-use record::{OutputRecord, WeightedClosure};
+use record::{NormalRecord, OutputRecord, WeightedClosure};
 
 /// Where scene space lies in the world: `p_scene = (p_world - center) * scale`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,7 +87,7 @@ impl Mesh {
 }
 
 /// A mesh placed in the scene. The index of an object is its geometry id in the ray tracer.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Object {
     /// Blender's name, for messages.
     pub name: String,
@@ -116,6 +116,13 @@ impl Object {
     #[must_use]
     pub const fn is_holdout(&self) -> bool {
         self.visibility & visibility::HOLDOUT != 0
+    }
+
+    /// True where the camera sees what is missing of its light (Blender's shadow catcher). A hole stays a hole.
+    #[must_use]
+    pub const fn is_catcher(&self) -> bool {
+        let flags = self.visibility & (visibility::CATCHER | visibility::HOLDOUT);
+        flags == visibility::CATCHER
     }
 
     /// Material of triangle `primitive`; slots past the last use the last, as Blender does.
@@ -174,8 +181,10 @@ pub struct MaterialProgram {
     pub program: Program,
     /// Which results are inputs of which closures.
     pub outputs: Vec<OutputRecord>,
-    /// The result that is the shading normal.
+    /// The result that is the shading normal of what has none of its own.
     pub normal: Option<Register>,
+    /// Closures with a shading normal of their own.
+    pub normals: Vec<NormalRecord>,
 }
 
 /// A lamp in scene space.
@@ -327,6 +336,35 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A shadow catcher that the camera sees.
+    #[must_use]
+    pub fn catcher(&self) -> Option<&Object> {
+        let is_seen = |object: &&Object| object.is_catcher() && object.visibility & visibility::CAMERA != 0;
+        self.objects.iter().find(is_seen)
+    }
+
+    /// The shadow catchers alone, as ordinary objects, with the lamps and the world that light them.
+    #[must_use]
+    pub fn without_objects(&self) -> Self {
+        let catchers = self.objects.iter().filter(|object| object.is_catcher());
+        let ordinary = |object: &Object| {
+            let visibility = object.visibility & !visibility::CATCHER;
+            Object { visibility, ..object.clone() }
+        };
+        let lamps = self.lamps.iter().filter(|lamp| lamp.visibility & visibility::CATCHER != 0);
+        Self {
+            space: self.space,
+            objects: catchers.map(ordinary).collect(),
+            materials: self.materials.clone(),
+            textures: Arc::clone(&self.textures),
+            lamps: lamps.cloned().collect(),
+            camera: self.camera.clone(),
+            world: self.world.clone(),
+            bounds: self.bounds,
+            problems: Vec::new(),
+        }
+    }
+
     /// Memory (bytes) of what changes while the shutter is open.
     #[must_use]
     pub fn motion_bytes(&self) -> usize {

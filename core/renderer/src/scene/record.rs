@@ -26,6 +26,9 @@ pub mod visibility {
     pub const LAMP: u32 = 32;
     /// No kind of ray: camera rays see a hole in the picture where the object is.
     pub const HOLDOUT: u32 = 64;
+    /// No kind of ray: the camera sees what is missing of the object's light, and lamps that have it are there without
+    /// the other objects too.
+    pub const CATCHER: u32 = 1 << 31;
     /// Everything a mesh object may be seen by.
     pub const ALL: u32 = CAMERA | DIFFUSE | GLOSSY | TRANSMISSION | SHADOW;
     /// Sets of objects that only some lights are blocked by.
@@ -208,8 +211,23 @@ pub struct ProgramRecord {
     pub instructions: Vec<Instruction>,
     /// Which results are inputs.
     pub outputs: Vec<OutputRecord>,
-    /// The result that is the shading normal (world space).
+    /// The result that is the shading normal (world space) of what has none of its own.
     pub normal: Option<Register>,
+    /// Closures with a shading normal of their own.
+    #[serde(default)]
+    pub normals: Vec<NormalRecord>,
+}
+
+/// A result that is the shading normal (world space) of one closure.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NormalRecord {
+    /// Index of the closure.
+    pub closure: usize,
+    /// True: of its coat alone; false: of all but its coat.
+    pub coat: bool,
+    /// The result.
+    pub register: Register,
 }
 
 /// A result that is an input of a closure.

@@ -4,6 +4,7 @@ use serde::Deserialize;
 use smallvec::{SmallVec, smallvec};
 
 use super::arithmetic::{BlendMode, MathFunction, VectorFunction};
+use super::panorama::Projection;
 use super::pattern::{GradientShape, Pattern};
 use super::texture::{Extension, Interpolation};
 
@@ -127,8 +128,8 @@ pub enum Instruction {
         interpolation: Interpolation,
         unassociate: bool,
     },
-    /// Where a direction lies in an equirectangular panorama, or in the picture of a mirror ball.
-    Panorama { vector: Register, ball: bool },
+    /// Where a direction or point lies in a picture that is laid around it.
+    Panorama { vector: Register, projection: Projection },
     /// The disk of a sun of an angular radius (rad) in the direction `towards`, seen along `vector`: colors at its lowest and
     /// highest points, darker towards the limb; black around it and below a height (sine).
     SunDisk { vector: Register, towards: [f32; 3], radius: f32, bottom: [f32; 3], top: [f32; 3], lowest: f32 },
@@ -184,6 +185,8 @@ pub enum Instruction {
     Fresnel { ior: Register, normal: Register },
     /// Blender's Layer Weight: its Fresnel (`facing` false) or Facing output.
     LayerWeight { blend: Register, normal: Register, facing: bool },
+    /// The direction around the object's z axis along the surface, from the place within the object's box (0 to 1).
+    Tangent { generated: Register },
     /// A normal from the color of a normal map; `attribute` is the UV map of a tangent space.
     NormalMap { color: Register, strength: Register, space: NormalSpace, attribute: u32 },
     /// A normal tilted by a height (m) that is known here and one step aside.
@@ -239,6 +242,7 @@ impl Instruction {
             | Self::Curves { color, .. } => smallvec![color],
             Self::Ramp { factor, .. } => smallvec![factor],
             Self::Fresnel { ior, normal } => smallvec![ior, normal],
+            Self::Tangent { generated } => smallvec![generated],
             Self::LayerWeight { blend, normal, .. } => smallvec![blend, normal],
             Self::NormalMap { color, strength, .. } => smallvec![color, strength],
             Self::Bump { strength, distance, height, height_x, height_y, normal, .. } => {

@@ -8,6 +8,7 @@
 //! chooses the level of the textures.
 
 mod arithmetic;
+mod cell_hash;
 mod instruction;
 mod noise;
 mod panorama;
@@ -21,8 +22,10 @@ use glam::Vec4;
 use smallvec::SmallVec;
 
 pub use arithmetic::{BlendMode, MathFunction, VectorFunction};
+pub use cell_hash::CellHash;
 pub use instruction::{Aside, Instruction, MOST_INSTRUCTIONS, NormalSpace, Quantity, Register, Tile};
 pub use noise::Fractal;
+pub use panorama::Projection;
 pub use pattern::{GradientShape, Pattern, VoronoiOutput, WaveDirection, WaveProfile};
 pub use texture::{Encoding, Extension, Interpolation, Pixels, Texture};
 pub use voronoi::{Feature, Metric};

@@ -227,7 +227,7 @@ pub(super) fn white(p: Position) -> Vec3 {
 }
 
 /// 0 to 1 from the bits of one to four numbers.
-fn unit_hash(numbers: &[f32]) -> f32 {
+pub(super) fn unit_hash(numbers: &[f32]) -> f32 {
     let mut words = [0; 4];
     for (word, number) in words.iter_mut().zip(numbers) {
         *word = number.to_bits();

@@ -1,21 +1,51 @@
-//! Pictures of all directions: where a direction lies in them. The formulas are those of Blender's Environment Texture.
+//! Pictures around something: where a direction or point lies in them. The formulas are those of Blender's Environment Texture
+//! and Image Texture.
 
 use std::f32::consts::{FRAC_1_PI, FRAC_1_SQRT_2, TAU};
 
 use glam::{Vec3, Vec4};
+use serde::Deserialize;
 
 use super::Value;
 
-/// Place of a direction of any length in the unit square: an equirectangular panorama, or a photograph of a mirror `ball`.
-pub(super) fn place(direction: Value, ball: bool) -> Value {
-    let d = direction.v.truncate();
+/// How a picture is laid around something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Projection {
+    /// All directions by longitude and latitude.
+    Equirectangular,
+    /// A photograph of a mirror ball.
+    MirrorBall,
+    /// Around the middle of a cube from 0 to 1, by longitude and latitude.
+    Sphere,
+    /// Around the z axis through that middle, z from 0 to 1.
+    Tube,
+}
+
+/// Place of a direction of any length, or of a point, in the unit square.
+pub(super) fn place(direction: Value, projection: Projection) -> Value {
+    let middle = match projection {
+        Projection::Equirectangular | Projection::MirrorBall => Vec3::ZERO,
+        Projection::Sphere | Projection::Tube => Vec3::splat(0.5),
+    };
+    let d = direction.v.truncate() - middle;
     let length = d.length();
-    let d = if length > 0.0 { d / length } else { Vec3::ZERO };
-    let [u, v] = if ball { mirror_ball(d) } else { equirectangular(d) };
+    let unit = if length > 0.0 { d / length } else { Vec3::ZERO };
+    let [u, v] = match projection {
+        Projection::Equirectangular => equirectangular(unit),
+        Projection::MirrorBall => mirror_ball(unit),
+        Projection::Sphere => [longitude(d), 0.5 + unit.z.clamp(-1.0, 1.0).asin() * FRAC_1_PI],
+        Projection::Tube => [longitude(d), d.z + 0.5],
+    };
     // Of an angle across the whole sphere: the mean of how it changes u and v.
     let per_radian = FRAC_1_PI * FRAC_1_SQRT_2;
     let width = if length > 0.0 { direction.width / length * per_radian } else { 0.0 };
     Value { v: Vec4::new(u, v, 0.0, 1.0), width }
+}
+
+/// 0.5 along +Y, more towards -X; 0 on the axis.
+fn longitude(d: Vec3) -> f32 {
+    if d.x == 0.0 && d.y == 0.0 { 0.0 } else { 0.5 - d.x.atan2(d.y) / TAU }
 }
 
 /// +X is the middle of the picture, +Z its top.
@@ -65,20 +95,34 @@ impl SunDisk {
 mod tests {
     use super::*;
 
-    fn at(d: Vec3, ball: bool) -> [f32; 2] {
-        let value = place(Value::vector(d), ball).v;
+    fn at(d: Vec3, projection: Projection) -> [f32; 2] {
+        let value = place(Value::vector(d), projection).v;
         [value.x, value.y]
     }
 
     #[test]
     fn directions_lie_where_blender_has_them() {
-        assert_eq!(at(Vec3::X, false), [0.5, 0.5]);
-        assert_eq!(at(Vec3::Y * 3.0, false), [0.25, 0.5]);
-        assert_eq!(at(Vec3::NEG_Y, false), [0.75, 0.5]);
-        assert_eq!(at(Vec3::Z, false)[1], 1.0);
-        assert_eq!(at(Vec3::NEG_Z, false)[1], 0.0);
-        assert_eq!(at(Vec3::NEG_Y, true), [0.5, 0.5]);
-        let side = at(Vec3::X, true);
+        let flat = |d| at(d, Projection::Equirectangular);
+        assert_eq!(flat(Vec3::X), [0.5, 0.5]);
+        assert_eq!(flat(Vec3::Y * 3.0), [0.25, 0.5]);
+        assert_eq!(flat(Vec3::NEG_Y), [0.75, 0.5]);
+        assert_eq!(flat(Vec3::Z)[1], 1.0);
+        assert_eq!(flat(Vec3::NEG_Z)[1], 0.0);
+        let ball = |d| at(d, Projection::MirrorBall);
+        assert_eq!(ball(Vec3::NEG_Y), [0.5, 0.5]);
+        let side = ball(Vec3::X);
         assert!((side[0] - 0.5 - 0.5 * FRAC_1_SQRT_2).abs() < 1e-6 && (side[1] - 0.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn pictures_are_wrapped_around_the_middle() {
+        let around = |x, y, z| Vec3::splat(0.5) + Vec3::new(x, y, z);
+        for projection in [Projection::Sphere, Projection::Tube] {
+            assert_eq!(at(around(0.0, 0.3, 0.0), projection), [0.5, 0.5]);
+            assert_eq!(at(around(0.3, 0.0, 0.0), projection), [0.25, 0.5]);
+        }
+        assert_eq!(at(around(0.0, 0.0, 0.2), Projection::Sphere), [0.0, 1.0]);
+        let raised = at(around(0.0, 3.0, 0.25), Projection::Tube);
+        assert_eq!(raised, [0.5, 0.75]);
     }
 }

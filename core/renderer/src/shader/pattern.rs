@@ -3,8 +3,9 @@
 use glam::{Vec3, Vec4};
 use serde::Deserialize;
 
+use super::cell_hash::CellHash;
 use super::noise::{self, Fractal, Octaves, Position};
-use super::voronoi::{Feature, Metric, Voronoi};
+use super::voronoi::{Feature, Found, Metric, Voronoi};
 
 /// Shapes of the Gradient Texture node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -92,14 +93,18 @@ pub enum Pattern {
         /// Three numbers instead of one.
         color: bool,
     },
-    /// vector, scale, smoothness, exponent, randomness.
+    /// vector, w, scale, detail, roughness, lacunarity, smoothness, exponent, randomness.
     Voronoi {
+        /// As for noise.
+        dimensions: u8,
         /// What is asked.
         feature: Feature,
         /// How distance is measured.
         metric: Metric,
-        /// Two dimensions.
-        flat: bool,
+        /// Which random numbers cells have.
+        hash: CellHash,
+        /// Within 0 and 1.
+        normalize: bool,
         /// What the result is.
         output: VoronoiOutput,
     },
@@ -139,15 +144,15 @@ pub enum VoronoiOutput {
     Distance,
     Color,
     Position,
+    W,
 }
 
 impl Pattern {
     /// Number of inputs.
     pub(super) const fn input_count(&self) -> usize {
         match self {
-            Self::Noise { .. } => 9,
+            Self::Noise { .. } | Self::Voronoi { .. } => 9,
             Self::WhiteNoise { .. } => 2,
-            Self::Voronoi { .. } => 5,
             Self::Wave { .. } => 7,
             Self::Magic { .. } => 3,
             Self::Brick { .. } => 10,
@@ -157,10 +162,12 @@ impl Pattern {
     /// What is wrong with its options.
     pub(super) fn fault(&self) -> Option<String> {
         match *self {
-            Self::Noise { dimensions, .. } | Self::WhiteNoise { dimensions, .. }
+            Self::Noise { dimensions, .. }
+            | Self::WhiteNoise { dimensions, .. }
+            | Self::Voronoi { dimensions, .. }
                 if !(1..=4).contains(&dimensions) =>
             {
-                Some(format!("a noise has one to four dimensions, not {dimensions}"))
+                Some(format!("a pattern has one to four dimensions, not {dimensions}"))
             }
             _ => None,
         }
@@ -192,23 +199,22 @@ impl Pattern {
                 let white = noise::white(position(vector, number(1), dimensions));
                 if color { white.extend(white.x) } else { Vec4::splat(white.x) }
             }
-            Self::Voronoi { feature, metric, flat, output } => {
+            Self::Voronoi { dimensions, feature, metric, hash, normalize, output } => {
                 let voronoi = Voronoi {
                     feature,
                     metric,
-                    flat,
-                    smoothness: (number(2) * 0.5).clamp(0.0, 0.5),
-                    exponent: number(3),
-                    randomness: number(4).clamp(0.0, 1.0),
+                    hash,
+                    detail: number(3).clamp(0.0, 15.0),
+                    roughness: number(4).clamp(0.0, 1.0),
+                    lacunarity: number(5),
+                    smoothness: (number(6) * 0.5).clamp(0.0, 0.5),
+                    exponent: number(7),
+                    randomness: number(8).clamp(0.0, 1.0),
+                    normalize,
                 };
-                let scale = number(1);
-                let found = voronoi.find(vector * scale);
-                match output {
-                    VoronoiOutput::Distance => Vec4::splat(found.distance),
-                    VoronoiOutput::Color => found.color.extend(1.0),
-                    VoronoiOutput::Position if scale == 0.0 => Vec4::ZERO,
-                    VoronoiOutput::Position => (found.position / scale).extend(1.0),
-                }
+                let scale = number(2);
+                let p = position(vector * scale, number(1) * scale, dimensions);
+                cells(&voronoi, p, scale, output)
             }
             Self::Wave { rings, direction, profile } => {
                 let distortion = WaveDistortion {
@@ -233,6 +239,34 @@ fn position(vector: Vec3, w: f32, dimensions: u8) -> Position {
     let dimensions = usize::from(dimensions);
     let x = if dimensions == 1 { [w, 0.0, 0.0, 0.0] } else { [vector.x, vector.y, vector.z, w] };
     Position { x, dimensions }
+}
+
+/// The Voronoi Texture node at a point that is scaled already.
+fn cells(voronoi: &Voronoi, p: Position, scale: f32, output: VoronoiOutput) -> Vec4 {
+    let [x, y, z, w] = p.x;
+    match p.dimensions {
+        1 => cell(&voronoi.find([x]), [3], scale, output),
+        2 => cell(&voronoi.find([x, y]), [0, 1], scale, output),
+        3 => cell(&voronoi.find([x, y, z]), [0, 1, 2], scale, output),
+        _ => cell(&voronoi.find([x, y, z, w]), [0, 1, 2, 3], scale, output),
+    }
+}
+
+/// What is asked about a cell; `axes` are the channels of x, y, z and w that its numbers belong to.
+fn cell<const N: usize>(found: &Found<N>, axes: [usize; N], scale: f32, output: VoronoiOutput) -> Vec4 {
+    let position = || {
+        let mut position = [0.0; 4];
+        for (axis, x) in axes.into_iter().zip(found.position) {
+            position[axis] = if scale == 0.0 { 0.0 } else { x / scale };
+        }
+        Vec4::from_array(position)
+    };
+    match output {
+        VoronoiOutput::Distance => Vec4::splat(found.distance),
+        VoronoiOutput::Color => found.color.extend(1.0),
+        VoronoiOutput::Position => position().truncate().extend(1.0),
+        VoronoiOutput::W => Vec4::splat(position().w),
+    }
 }
 
 struct WaveDistortion {

@@ -105,6 +105,7 @@ fn execute(
         | Instruction::Mean { .. } => vectors(instruction, &r),
         Instruction::Fresnel { .. }
         | Instruction::LayerWeight { .. }
+        | Instruction::Tangent { .. }
         | Instruction::NormalMap { .. }
         | Instruction::Bump { .. } => at_surface(instruction, &r, point),
         _ => colors(instruction, &r),
@@ -127,7 +128,7 @@ fn vectors(instruction: &Instruction, r: &Operands<'_>) -> Value {
             Value { v: v.extend(1.0), width: r.width(vector) * size.abs().max_element() }
         }
         Instruction::Normalize { vector } => Value::vector(r.vector(vector).normalize_or_zero()),
-        Instruction::Panorama { vector, ball } => panorama::place(r.value(vector), ball),
+        Instruction::Panorama { vector, projection } => panorama::place(r.value(vector), projection),
         Instruction::SunDisk { vector, towards, radius, bottom, top, lowest } => {
             let disk = panorama::SunDisk { towards, radius, bottom, top, lowest };
             disk.seen(r.value(vector))
@@ -208,6 +209,7 @@ fn at_surface(instruction: &Instruction, r: &Operands<'_>, point: &impl Point) -
         Instruction::LayerWeight { blend, normal, facing } => {
             Value::number(surface::layer_weight(point, r.number(blend), r.vector(normal), facing))
         }
+        Instruction::Tangent { generated } => Value::vector(surface::tangent(point, r.vector(generated))),
         Instruction::NormalMap { color, strength, space, attribute } => {
             Value::vector(surface::normal_map(point, r.vector(color), r.number(strength), space, attribute))
         }

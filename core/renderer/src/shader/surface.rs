@@ -59,6 +59,14 @@ pub(super) fn normal_map(
     (ns + (mapped - ns) * strength).try_normalize().unwrap_or(ns)
 }
 
+/// The Tangent of the Geometry node: around the object's z axis, along the surface.
+pub(super) fn tangent(point: &impl Point, generated: Vec3) -> Vec3 {
+    let around = point.world_normal(Vec3::new(0.5 - generated.y, generated.x - 0.5, 0.0));
+    let back = point.geometry(Quantity::Backfacing, Aside::Here).v.x > 0.0;
+    let (around, ns) = (if back { -around } else { around }, ask(point, Quantity::Normal));
+    ns.cross(around.cross(ns).normalize_or_zero())
+}
+
 /// Fresnel's equations for unpolarized light: the share reflected at `cos` by an interface of relative index `eta`.
 fn dielectric(cos: f32, eta: f32) -> f32 {
     let c = cos.abs();

@@ -30,6 +30,8 @@ pub enum Interpolation {
     Closest,
     /// Bilinear.
     Linear,
+    /// A cubic B-spline, which blurs: Blender's Cubic and Smart.
+    Cubic,
 }
 
 /// How stored numbers stand for colors.
@@ -146,6 +148,7 @@ impl Texture {
         let mut color = match interpolation {
             Interpolation::Closest => level.texel(level.cell(at, 0.0).0, extension),
             Interpolation::Linear => level.bilinear(at, extension),
+            Interpolation::Cubic => level.bicubic(at, extension),
         };
         if unassociate && color.w != 0.0 && color.w != 1.0 {
             color = (color / color.w).truncate().extend(color.w);
@@ -187,6 +190,19 @@ impl Level {
         low + (high - low) * t
     }
 
+    fn bicubic(&self, at: [f32; 2], extension: Extension) -> Vec4 {
+        let ([x, y], beyond) = self.cell(at, -0.5);
+        let [columns, rows] = beyond.map(spline);
+        let mut sum = Vec4::ZERO;
+        for (dy, of_row) in (-1..).zip(rows) {
+            for (dx, of_column) in (-1..).zip(columns) {
+                let texel = self.texel([x.saturating_add(dx), y.saturating_add(dy)], extension);
+                sum += texel * (of_row * of_column);
+            }
+        }
+        sum
+    }
+
     #[inline]
     fn texel(&self, cell: [i64; 2], extension: Extension) -> Vec4 {
         let mut place = [0; 2];
@@ -207,6 +223,12 @@ impl Level {
         }
         self.pixels.get(place[1] * self.size[0] + place[0])
     }
+}
+
+/// Weights of four points in a row at `t` from the second to the third: the uniform cubic B-spline.
+fn spline(t: f32) -> [f32; 4] {
+    let (t2, t3) = (t * t, t * t * t);
+    [(1.0 - t).powi(3) / 6.0, (3.0 * t3 - 6.0 * t2 + 4.0) / 6.0, (3.0 * (t + t2 - t3) + 1.0) / 6.0, t3 / 6.0]
 }
 
 /// Half the size, each texel the mean of those it covers.
@@ -304,6 +326,18 @@ mod tests {
     }
 
     #[test]
+    fn a_spline_keeps_straight_lines_and_blurs_edges() {
+        for t in [0.0, 0.3, 0.99] {
+            let weights = spline(t);
+            let mean: f32 = weights.iter().zip([-1.0, 0.0, 1.0, 2.0]).map(|(weight, x)| weight * x).sum();
+            assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-6 && (mean - t).abs() < 1e-6);
+        }
+        // At a texel's center two thirds are its own, in each direction; the edge is repeated.
+        let cubic = look([0.25, 0.25], Extension::Extend, Interpolation::Cubic);
+        assert!((cubic - (1.0 + 2.0) / 6.0).abs() < 1e-6, "{cubic}");
+    }
+
+    #[test]
     fn edges_follow_the_extension() {
         let closest = |x: f32, extension| look([x, 0.1], extension, Interpolation::Closest);
         assert_eq!(closest(1.25, Extension::Repeat), 0.0);
@@ -325,6 +359,7 @@ mod tests {
                 for width in [0.0, bad] {
                     let _ = four().color([bad, 0.5], width, extension, Interpolation::Closest, true);
                     let _ = four().color([0.5, bad], width, extension, Interpolation::Linear, true);
+                    let _ = four().color([bad, bad], width, extension, Interpolation::Cubic, true);
                 }
             }
         }

@@ -1,7 +1,9 @@
-//! The Voronoi Texture node in two and three dimensions: one point in every cell of a lattice, and how far they are.
+//! The Voronoi Texture node: one point in every cell of a lattice of one to four dimensions, and how far they are.
 
-use glam::{IVec3, Vec3};
+use glam::Vec3;
 use serde::Deserialize;
+
+use super::cell_hash::CellHash;
 
 /// What is asked about the points around.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -12,6 +14,7 @@ pub enum Feature {
     F2,
     SmoothF1,
     DistanceToEdge,
+    NSphereRadius,
 }
 
 /// How distance is measured.
@@ -30,70 +33,146 @@ pub enum Metric {
 pub(super) struct Voronoi {
     pub(super) feature: Feature,
     pub(super) metric: Metric,
-    /// Two dimensions: z is 0 everywhere.
-    pub(super) flat: bool,
+    pub(super) hash: CellHash,
     pub(super) smoothness: f32,
     pub(super) exponent: f32,
     /// 0: the points are the lattice's own.
     pub(super) randomness: f32,
+    /// Number of finer lattices on top of the first; a part of one counts in part.
+    pub(super) detail: f32,
+    /// How much each lattice counts, compared with the one before.
+    pub(super) roughness: f32,
+    /// How much finer each lattice is.
+    pub(super) lacunarity: f32,
+    /// Within 0 and 1.
+    pub(super) normalize: bool,
 }
 
 /// What the node finds.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
+pub(super) struct Found<const N: usize> {
     pub(super) distance: f32,
     pub(super) color: Vec3,
-    pub(super) position: Vec3,
+    pub(super) position: [f32; N],
+}
+
+impl<const N: usize> Found<N> {
+    const fn nothing(distance: f32) -> Self {
+        Self { distance, color: Vec3::ZERO, position: [0.0; N] }
+    }
 }
 
 impl Voronoi {
     /// Looks around `p`.
-    pub(super) fn find(&self, p: Vec3) -> Found {
-        let p = if self.flat { Vec3::new(p.x, p.y, 0.0) } else { p };
-        let floor = p.floor();
-        let (cell, local) = (floor.as_ivec3(), p - floor);
-        let found = match self.feature {
+    pub(super) fn find<const N: usize>(&self, p: [f32; N]) -> Found<N> {
+        let is_single = self.detail == 0.0 || self.roughness == 0.0 || self.feature == Feature::NSphereRadius;
+        let (found, most) = match (is_single, self.feature) {
+            (true, _) => (self.lattice(p), 1.0),
+            (false, Feature::DistanceToEdge) => self.edges(p),
+            (false, _) => self.layers(p),
+        };
+        match self.feature {
+            Feature::NSphereRadius => found,
+            _ if !self.normalize => found,
+            // The lattices of edges are measured one by one.
+            Feature::DistanceToEdge if !is_single => Found { distance: found.distance / most, ..found },
+            _ => {
+                let distance = found.distance / (most * self.farthest::<N>());
+                Found { distance, color: found.color / most, ..found }
+            }
+        }
+    }
+
+    /// The farthest that a point is expected to be.
+    fn farthest<const N: usize>(&self) -> f32 {
+        let reach = 0.5 + 0.5 * self.randomness;
+        match self.feature {
+            Feature::DistanceToEdge => reach,
+            Feature::F2 => 2.0 * self.distance([0.0; N], [reach; N]),
+            _ => self.distance([0.0; N], [reach; N]),
+        }
+    }
+
+    /// The sum of lattices, each finer than the one before, and the sum of how much they count.
+    fn layers<const N: usize>(&self, p: [f32; N]) -> (Found<N>, f32) {
+        let (mut sum, mut most) = (Found::nothing(0.0), 0.0);
+        let (mut scale, mut amplitude) = (1.0, 1.0);
+        for share in self.shares() {
+            let next = self.lattice(p.map(|x| x * scale));
+            let counts = amplitude * share;
+            most += counts;
+            sum.distance += next.distance * counts;
+            sum.color += next.color * counts;
+            sum.position = mixed(sum.position, next.position.map(|x| x / scale), counts);
+            scale *= self.lacunarity;
+            amplitude *= self.roughness;
+        }
+        (sum, most)
+    }
+
+    /// The edges of all lattices together, and the farthest that one is expected to be.
+    fn edges<const N: usize>(&self, p: [f32; N]) -> (Found<N>, f32) {
+        let (mut distance, mut most) = (8.0_f32, self.farthest::<N>());
+        let (mut scale, mut amplitude) = (1.0, 1.0);
+        for share in self.shares() {
+            let nearer = distance.min(self.lattice(p.map(|x| x * scale)).distance / scale);
+            let counts = amplitude * share;
+            most += (self.farthest::<N>() / scale - most) * counts;
+            distance += (nearer - distance) * counts;
+            scale *= self.lacunarity;
+            amplitude *= self.roughness;
+        }
+        (Found { color: Vec3::splat(distance), ..Found::nothing(distance) }, most)
+    }
+
+    /// For each lattice: 1, or for the last a part of it.
+    fn shares(&self) -> impl Iterator<Item = f32> {
+        let whole = self.detail as usize + 1;
+        let rest = self.detail.fract();
+        std::iter::repeat_n(1.0, whole).chain((rest > 0.0).then_some(rest))
+    }
+
+    /// Of one lattice.
+    fn lattice<const N: usize>(&self, p: [f32; N]) -> Found<N> {
+        let floor = p.map(f32::floor);
+        let (cell, local) = (floor.map(|x| x as i32), zipped(p, floor, |x, low| x - low));
+        let mut found = match self.feature {
             Feature::SmoothF1 if self.smoothness > 0.0 => self.smooth(cell, local),
             Feature::F1 | Feature::SmoothF1 => self.nearest(cell, local)[0],
             Feature::F2 => self.nearest(cell, local)[1],
-            Feature::DistanceToEdge => {
-                let distance = self.edge(cell, local);
-                Found { distance, color: Vec3::splat(distance), position: Vec3::ZERO }
+            Feature::DistanceToEdge | Feature::NSphereRadius => {
+                let distance = match self.feature {
+                    Feature::NSphereRadius => self.radius(cell, local),
+                    _ if N == 1 => self.edge_on_line(cell, local),
+                    _ => self.edge(cell, local),
+                };
+                Found { color: Vec3::splat(distance), ..Found::nothing(distance) }
             }
         };
-        Found { position: found.position + floor, ..found }
-    }
-
-    /// The cells around one, up to `reach` away.
-    fn around(&self, reach: i32) -> impl Iterator<Item = IVec3> {
-        let depth = if self.flat { 0 } else { reach };
-        (-depth..=depth).flat_map(move |z| {
-            (-reach..=reach).flat_map(move |y| (-reach..=reach).map(move |x| IVec3::new(x, y, z)))
-        })
+        found.position = zipped(found.position, floor, |x, low| x + low);
+        found
     }
 
     /// Where the point of the cell `offset` away from `cell` is, seen from the corner of `cell`.
-    fn point(&self, cell: IVec3, offset: IVec3) -> Vec3 {
-        let at = cell.wrapping_add(offset);
-        let random = if self.flat { hash2(at) } else { hash3(at) };
-        offset.as_vec3() + random * self.randomness
+    fn point<const N: usize>(&self, cell: [i32; N], offset: [i32; N]) -> [f32; N] {
+        let random = self.hash.place(zipped(cell, offset, i32::wrapping_add));
+        zipped(offset, random, |whole, random| whole as f32 + random * self.randomness)
     }
 
-    fn distance(&self, a: Vec3, b: Vec3) -> f32 {
-        let d = (a - b).abs();
+    fn distance<const N: usize>(&self, a: [f32; N], b: [f32; N]) -> f32 {
+        let d = zipped(a, b, |a, b| (a - b).abs());
         match self.metric {
-            Metric::Euclidean => d.length(),
-            Metric::Manhattan => d.element_sum(),
-            Metric::Chebychev => d.max_element(),
-            Metric::Minkowski => d.map(|x| x.powf(self.exponent)).element_sum().powf(1.0 / self.exponent),
+            Metric::Euclidean => length(d),
+            Metric::Manhattan => sum(d),
+            Metric::Chebychev => d.into_iter().fold(0.0, f32::max),
+            Metric::Minkowski => sum(d.map(|x| x.powf(self.exponent))).powf(1.0 / self.exponent),
         }
     }
 
     /// The nearest point and the one after it.
-    fn nearest(&self, cell: IVec3, local: Vec3) -> [Found; 2] {
-        let none = Found { distance: f32::MAX, color: Vec3::ZERO, position: Vec3::ZERO };
-        let mut best = [(none, IVec3::ZERO); 2];
-        for offset in self.around(1) {
+    fn nearest<const N: usize>(&self, cell: [i32; N], local: [f32; N]) -> [Found<N>; 2] {
+        let mut best = [(Found::nothing(f32::MAX), [0; N]); 2];
+        for offset in around(1) {
             let position = self.point(cell, offset);
             let distance = self.distance(position, local);
             let found = (Found { distance, color: Vec3::ZERO, position }, offset);
@@ -103,14 +182,17 @@ impl Voronoi {
                 best[1] = found;
             }
         }
-        best.map(|(found, offset)| Found { color: hash3(cell.wrapping_add(offset)), ..found })
+        best.map(|(found, offset)| Found {
+            color: self.hash.color(zipped(cell, offset, i32::wrapping_add)),
+            ..found
+        })
     }
 
     /// As the nearest, blended over with those that are little farther away.
-    fn smooth(&self, cell: IVec3, local: Vec3) -> Found {
-        let mut sum = Found { distance: 0.0, color: Vec3::ZERO, position: Vec3::ZERO };
+    fn smooth<const N: usize>(&self, cell: [i32; N], local: [f32; N]) -> Found<N> {
+        let mut sum = Found::nothing(0.0);
         let mut is_first = true;
-        for offset in self.around(2) {
+        for offset in around(2) {
             let position = self.point(cell, offset);
             let distance = self.distance(position, local);
             let t = (0.5 + 0.5 * (sum.distance - distance) / self.smoothness).clamp(0.0, 1.0);
@@ -118,68 +200,91 @@ impl Voronoi {
             is_first = false;
             let correction = self.smoothness * h * (1.0 - h);
             sum.distance += (distance - sum.distance) * h - correction;
-            let correction = Vec3::splat(correction / (1.0 + 3.0 * self.smoothness));
-            let color = hash3(cell.wrapping_add(offset));
-            sum.color = sum.color.lerp(color, h) - correction;
-            sum.position = sum.position.lerp(position, h) - correction;
-        }
-        if self.flat {
-            sum.position.z = 0.0;
+            let correction = correction / (1.0 + 3.0 * self.smoothness);
+            let color = self.hash.color(zipped(cell, offset, i32::wrapping_add));
+            sum.color = sum.color.lerp(color, h) - Vec3::splat(correction);
+            sum.position = mixed(sum.position, position, h).map(|x| x - correction);
         }
         sum
     }
 
     /// Distance to the nearest plane between two points.
-    fn edge(&self, cell: IVec3, local: Vec3) -> f32 {
-        let mut to_nearest = Vec3::splat(1e9);
-        for offset in self.around(1) {
-            let along = self.point(cell, offset) - local;
-            if along.length_squared() < to_nearest.length_squared() {
-                to_nearest = along;
+    fn edge<const N: usize>(&self, cell: [i32; N], local: [f32; N]) -> f32 {
+        let along = |offset| zipped(self.point(cell, offset), local, |x, y| x - y);
+        let mut to_nearest = [1e9; N];
+        for to_point in around(1).map(along) {
+            if dot(to_point, to_point) < dot(to_nearest, to_nearest) {
+                to_nearest = to_point;
             }
         }
         let mut least = f32::MAX;
-        for offset in self.around(1) {
-            let along = self.point(cell, offset) - local;
-            let between = along - to_nearest;
-            if between.length_squared() > 1e-4 {
-                least = least.min(((to_nearest + along) * 0.5).dot(between.normalize()));
+        for to_point in around(1).map(along) {
+            let between = zipped(to_point, to_nearest, |x, y| x - y);
+            if dot(between, between) > 1e-4 {
+                let to_length = 1.0 / length(between);
+                let middle = zipped(to_nearest, to_point, |x, y| (x + y) * 0.5);
+                least = least.min(dot(middle, between.map(|x| x * to_length)));
             }
         }
         least
     }
-}
 
-/// 31 bits as a number from 0 to 1.
-fn unit(word: i32) -> f32 {
-    (word & i32::MAX) as f32 * (1.0 / i32::MAX as f32)
-}
-
-/// Jarzynski and Olano 2020, "Hash Functions for GPU Rendering", pcg3d, on signed words.
-fn hash3(cell: IVec3) -> Vec3 {
-    let [mut x, mut y, mut z] =
-        cell.to_array().map(|v| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
-    for round in 0..2 {
-        x = x.wrapping_add(y.wrapping_mul(z));
-        y = y.wrapping_add(z.wrapping_mul(x));
-        z = z.wrapping_add(x.wrapping_mul(y));
-        if round == 0 {
-            [x, y, z] = [x, y, z].map(|v| v ^ (v >> 16));
-        }
+    /// On a line: distance to the nearer of the two middles between a cell's point and its neighbors'.
+    fn edge_on_line<const N: usize>(&self, cell: [i32; N], local: [f32; N]) -> f32 {
+        let [left, own, right] = [-1, 0, 1].map(|offset| self.point(cell, [offset; N])[0]);
+        let to_middle = |other: f32| ((own + other) * 0.5 - local[0]).abs();
+        to_middle(left).min(to_middle(right))
     }
-    Vec3::new(unit(x), unit(y), unit(z))
+
+    /// Half the distance from the nearest point to the one nearest to that.
+    fn radius<const N: usize>(&self, cell: [i32; N], local: [f32; N]) -> f32 {
+        let apart = |a: [f32; N], b: [f32; N]| length(zipped(a, b, |x, y| x - y));
+        let (mut nearest, mut its_cell, mut least) = ([0.0; N], cell, f32::MAX);
+        for offset in around(1) {
+            let point = self.point(cell, offset);
+            let distance = apart(point, local);
+            if distance < least {
+                (nearest, its_cell, least) = (point, offset, distance);
+            }
+        }
+        let others = around(1).filter(|offset| *offset != [0; N]);
+        let to_other = |offset| apart(self.point(cell, zipped(its_cell, offset, i32::wrapping_add)), nearest);
+        0.5 * others.map(to_other).fold(f32::MAX, f32::min)
+    }
 }
 
-/// As [`hash3`], pcg2d of x and y.
-fn hash2(cell: IVec3) -> Vec3 {
-    const FACTOR: i32 = 1_664_525;
-    let [mut x, mut y] = [cell.x, cell.y].map(|v| v.wrapping_mul(FACTOR).wrapping_add(1_013_904_223));
-    for round in 0..2 {
-        x = x.wrapping_add(y.wrapping_mul(FACTOR));
-        y = y.wrapping_add(x.wrapping_mul(FACTOR));
-        if round == 0 {
-            [x, y] = [x, y].map(|v| v ^ (v >> 16));
+/// The cells around one, up to `reach` away; the first number changes fastest.
+fn around<const N: usize>(reach: i32) -> impl Iterator<Item = [i32; N]> {
+    std::iter::successors(Some([-reach; N]), move |last| {
+        let mut next = *last;
+        for number in &mut next {
+            if *number < reach {
+                *number += 1;
+                return Some(next);
+            }
+            *number = -reach;
         }
-    }
-    Vec3::new(unit(x), unit(y), 0.0)
+        None
+    })
+}
+
+fn zipped<A: Copy, B: Copy, C, const N: usize>(a: [A; N], b: [B; N], f: impl Fn(A, B) -> C) -> [C; N] {
+    std::array::from_fn(|i| f(a[i], b[i]))
+}
+
+fn sum<const N: usize>(a: [f32; N]) -> f32 {
+    a[1..].iter().fold(a[0], |sum, x| sum + x)
+}
+
+fn dot<const N: usize>(a: [f32; N], b: [f32; N]) -> f32 {
+    sum(zipped(a, b, |x, y| x * y))
+}
+
+fn length<const N: usize>(a: [f32; N]) -> f32 {
+    dot(a, a).sqrt()
+}
+
+/// From `a` at 0 to `b` at 1.
+fn mixed<const N: usize>(a: [f32; N], b: [f32; N], t: f32) -> [f32; N] {
+    zipped(a, b, |a, b| a * (1.0 - t) + b * t)
 }

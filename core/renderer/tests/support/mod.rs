@@ -300,13 +300,19 @@ pub(crate) struct Picture {
 
 /// Renders a scene that must render.
 pub(crate) fn render(scene: &Scene, settings: &RenderSettings) -> Picture {
+    let (film, stats) = expose(scene, settings);
+    Picture { combined: film.combined(), indirect: film.indirect(), stats }
+}
+
+/// The film of a scene that must render.
+pub(crate) fn expose(scene: &Scene, settings: &RenderSettings) -> (Film, Stats) {
     let [_, _, width, height] = scene.camera.region;
     let film = Film::new(width, height, &settings.film);
     let mut stats = Stats::default();
     render::render(scene, settings, library(), &film, &Progress::default(), &mut stats)
         .expect("the scene renders");
     assert_eq!(stats.nonfinite_pixels, 0);
-    Picture { combined: film.combined(), indirect: film.indirect(), stats }
+    (film, stats)
 }
 
 /// Renders what a builder holds.
