@@ -11,6 +11,7 @@ import pytest
 import rgp_engine
 from rgp_engine import native
 from rgp_engine.report import Outcome, last_outcome
+from tests.blender import build
 from tests.blender.recording_core import Core, SceneBuilder
 
 
@@ -64,6 +65,20 @@ def export(scene: Any, recorded: type[Core]) -> Callable[[], SceneBuilder]:
         return recorded.last
 
     return run
+
+
+@pytest.fixture
+def exported(export: Callable[[], SceneBuilder]) -> Callable[[Any], dict[str, Any]]:
+    """The record of a material, on the one object of the scene."""
+
+    def get(b_material: Any) -> dict[str, Any]:
+        build.add_camera()
+        b_mesh = build.quad()
+        b_mesh.materials.append(b_material)
+        build.add_object("Quad", b_mesh)
+        return export().material_of(b_material.name)
+
+    return get
 
 
 @pytest.fixture

@@ -8,17 +8,9 @@ from tests.blender import build
 
 
 @pytest.fixture
-def closures(export):
-    """Closures of the material named Material, on the one object of the scene."""
-
-    def get(b_material):
-        build.add_camera()
-        b_mesh = build.quad()
-        b_mesh.materials.append(b_material)
-        build.add_object("Quad", b_mesh)
-        return export().material_of(b_material.name)["closures"]
-
-    return get
+def closures(exported):
+    """Closures of a material, on the one object of the scene."""
+    return lambda b_material: exported(b_material)["closures"]
 
 
 def only(closures):

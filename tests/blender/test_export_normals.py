@@ -5,20 +5,6 @@ import pytest
 from tests.blender import build
 
 
-@pytest.fixture
-def exported(export):
-    """The record of a material, on the one object of the scene."""
-
-    def get(b_material):
-        build.add_camera()
-        b_mesh = build.quad()
-        b_mesh.materials.append(b_material)
-        build.add_object("Quad", b_mesh)
-        return export().material_of(b_material.name)
-
-    return get
-
-
 @pytest.mark.parametrize("second", ["none", "other", "same"])
 def test_every_shader_has_its_own_normal(scene, exported, problems, second):
     b_material, b_tree, b_output = build.material()

@@ -132,6 +132,7 @@ impl Catchers {
         *lock(&self.pass[tile]) = samples;
         nonfinite
     }
+
     /// Adds the samples of the pass, which belong to the samples `all` in the order of the picture's pixels, to one half of
     /// the picture.
     pub(super) fn finish_pass(&self, film: &Film, all: &Spread, gather_rays: f32, half: usize) {
