@@ -12,7 +12,12 @@ TOLERANCE = 0.01
 """Of the mean over the channels."""
 STANDARD_ERRORS = 3.0
 """Of both renderers, granted beside the tolerance."""
-SETTINGS = {"gather.rays": 64, "gather.camera_samples": 64, "photon_pass.photon_count": 200_000}
+SETTINGS = {
+    "gather.rays": 64,
+    "gather.camera_samples": 64,
+    "photon_pass.photon_count": 200_000,
+    "gather.max_depth": 64,
+}
 SEEDS = (0,)
 """One picture has no noise to speak of in its mean."""
 CAUSTIC_SETTINGS = {**SETTINGS, "gather.rays": 512, "gather.camera_samples": 256}
