@@ -30,6 +30,23 @@ class RGPPhotonPassSettings(bpy.types.PropertyGroup):
         soft_min=10_000,
         soft_max=100_000_000,
     )
+    caustic_nearest: bpy.props.IntProperty(
+        name="Caustic Nearest",
+        description="Photons over which caustics are averaged; fewer make them sharper and noisier",
+        default=64,
+        min=2,
+        max=1000,
+    )
+    caustic_solid_angle: bpy.props.FloatProperty(
+        name="Caustic Solid Angle",
+        description=(
+            "Caustics of lights that mirrors and glass see smaller than this are made of photons, "
+            "of wider ones of gather rays"
+        ),
+        default=0.5,
+        min=0.0,
+        max=12.0,
+    )
     max_depth: bpy.props.IntProperty(
         name="Max Depth",
         description="Surfaces a photon may visit before it is dropped; low values darken the picture",

@@ -25,7 +25,14 @@ class RGP_PT_photons(EnginePanel, Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        names = ("photon_count", "caustic_count", "max_depth", "aim")
+        names = (
+            "photon_count",
+            "caustic_count",
+            "caustic_nearest",
+            "caustic_solid_angle",
+            "max_depth",
+            "aim",
+        )
         draw_settings(self.layout, context.scene.rgp.photon_pass, *names)
 
 

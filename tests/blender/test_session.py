@@ -3,6 +3,7 @@
 import time
 
 import bpy
+import numpy as np
 import pytest
 
 from rgp_engine import engine, native, report, session
@@ -158,21 +159,25 @@ def test_problems_end_in_one_warning(scene, recorded, calls):
     assert args[1].startswith("2 problems")
 
 
-@pytest.mark.parametrize("names", [["Combined"], ["Combined", "Indirect"], ["Combined", "Shadow Catcher"]])
-def test_passes_on_request(scene, recorded, monkeypatch, names):
-    seen = []
+@pytest.mark.parametrize("more", [{}, {"Indirect": 0.125}, {"Shadow Catcher": 0.5}])
+def test_passes_on_request(scene, recorded, monkeypatch, more):
+    """Each with the picture that the recording core has for it."""
+    seen = {}
     original = session._write_passes
 
     def write_passes(core_session, b_result):
-        seen.extend(b_pass.name for b_pass in b_result.layers[0].passes)
         original(core_session, b_result)
+        for b_pass in b_result.layers[0].passes:
+            values = np.empty(len(b_pass.rect) * b_pass.channels, np.float32)
+            b_pass.rect.foreach_get(values)
+            seen[b_pass.name] = set(values.tolist())
 
     monkeypatch.setattr(session, "_write_passes", write_passes)
-    for name in names[1:]:
+    for name in more:
         setattr(scene.view_layers[0].rgp, f"use_pass_{name.lower().replace(' ', '_')}", True)
     build.lit_room()
     bpy.ops.render.render()
-    assert seen == names
+    assert seen == {name: {value} for name, value in {"Combined": 0.25, **more}.items()}
 
 
 def failing(monkeypatch, error):

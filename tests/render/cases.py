@@ -202,6 +202,9 @@ MATERIALS: dict[str, Surface] = {
     "mix": joined("MixShader", _diffuse, shader("BsdfGlossy", Color=GOLD, Roughness=0.4), 0.3),
     "bumped": bumped(_diffuse, "Normal"),
     "bumped_glossy": bumped(shader("BsdfGlossy", Color=GOLD, Roughness=0.3), "Normal"),
+    "bumped_glass": bumped(
+        shader("BsdfPrincipled", Base_Color=TINT, Roughness=0.0, IOR=1.45, Transmission_Weight=1.0), "Normal"
+    ),
     "coat_over_bumps": bumped(_coated, "Normal"),
     "coat_bumped": bumped(_coated, "Coat Normal"),
     "coat_and_base_bumped": bumped(_coated, "Normal", "Coat Normal"),

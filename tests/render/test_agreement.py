@@ -9,7 +9,7 @@ import pytest
 from tests.render.agreement.exclusions import EXCLUSIONS
 from tests.render.agreement.features import features
 from tests.render.agreement.measure import Agreement, Renders, measure
-from tests.render.agreement.page import write
+from tests.render.agreement.page import TITLES, write
 
 NOISE = 0.06
 COUNT = 4
@@ -56,6 +56,10 @@ def test_the_page_tells_what_differs_and_why(tmp_path: Path) -> None:
 
 def test_reasons_are_given_for_what_is_compared() -> None:
     assert set(EXCLUSIONS) <= {feature.name for feature in features()}
+
+
+def test_every_group_has_a_title() -> None:
+    assert {feature.name.split("/", 1)[0] for feature in features()} == set(TITLES)
 
 
 def test_a_feature_is_compared() -> None:

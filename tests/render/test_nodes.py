@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from tests.render import pictures
-from tests.render.node_cases import NODES, node_scene
+from tests.render.node_cases import NODES
+from tests.render.node_scene import node_scene
 
 pytestmark = pytest.mark.slow
 

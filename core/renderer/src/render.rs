@@ -321,7 +321,7 @@ fn light<'a>(
     // The reference stays free of photons: it finds caustics as rays do.
     let by_photons = plan.has_casters && settings.gather.estimator != EstimatorKind::Path;
     if let Some(casters) = by_photons.then(|| caustics::casters(scene, &materials)).flatten() {
-        lights.map_caustics(casters);
+        lights.map_caustics(casters, settings.photon_pass.caustic_solid_angle as f32);
     }
     let proxies = lights.lamp_proxies();
     let threads = settings.render.threads as usize;

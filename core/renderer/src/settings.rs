@@ -12,6 +12,10 @@ pub struct PhotonPassSettings {
     pub photon_count: u64,
     /// Photons for caustics, in scenes that call for them.
     pub caustic_count: u64,
+    /// Photons that end the disk over which a caustic is read.
+    pub caustic_nearest: u32,
+    /// Lights that mirrors and glass see under less than this (sr) have their caustics made of photons.
+    pub caustic_solid_angle: f64,
     /// Surfaces a photon may visit.
     pub max_depth: u32,
     /// Whether photons from suns and the world are aimed at what the picture looks at; Auto: where most would miss it.
@@ -190,7 +194,14 @@ pub struct RenderSettings {
 
 impl Default for PhotonPassSettings {
     fn default() -> Self {
-        Self { photon_count: 1_000_000, caustic_count: 1_000_000, max_depth: 64, aim: Switch::Auto }
+        Self {
+            photon_count: 1_000_000,
+            caustic_count: 1_000_000,
+            caustic_nearest: 64,
+            caustic_solid_angle: 0.5,
+            max_depth: 64,
+            aim: Switch::Auto,
+        }
     }
 }
 
@@ -306,6 +317,8 @@ const ESTIMATORS: &[&str] = &[
 pub const KNOBS: &[Knob] = &[
     knob("photon_pass", "photon_count", int(0, 1_000_000_000), "photons", "Photons emitted by all lights together; more make smoother indirect light"),
     knob("photon_pass", "caustic_count", int(0, 1_000_000_000), "photons", "Photons sent to mirrors and glass for caustics, where the scene has any; more make them sharper; 0 leaves out those of small lights"),
+    knob("photon_pass", "caustic_nearest", int(2, 1000), "photons", "Photons over which caustics are averaged; fewer make them sharper and noisier"),
+    knob("photon_pass", "caustic_solid_angle", Kind::Float { minimum: 0.0, maximum: 12.0 }, "sr", "Caustics of lights that mirrors and glass see smaller than this are made of photons, of wider ones of gather rays"),
     knob("photon_pass", "max_depth", int(1, 1000), "surfaces", "Surfaces a photon may visit before it is dropped; low values darken the picture"),
     knob("photon_pass", "aim", SWITCH, "", "Photons of suns and the world go where the picture looks; Auto: where most would miss it"),
     knob("pyramid", "finest_resolution", int(1, 1024), "cells", "Cells of the finest level along the longest side of what the camera and its gather rays see"),

@@ -42,7 +42,7 @@ fn flux_into_ball(count: u32, mut emit: impl FnMut() -> Option<Emission>) -> (f6
 fn assert_same_flux(mut lights: Lights, most_aimed: bool) {
     let mut random = Random(17);
     let (even, rare) = flux_into_ball(4_000_000, || lights.emit(random.uniforms()));
-    lights.map_caustics(casters());
+    lights.map_caustics(casters(), 0.5);
     assert!(lights.has_mapped());
     let (aimed, often) = flux_into_ball(200_000, || lights.emit_to_casters(random.uniforms()));
     assert_close(aimed, even, 0.03);
@@ -96,7 +96,7 @@ fn wide_lights_are_left_to_rays() {
         Lights::build(&scene(Vec::new(), Vec::new(), 1.0), &[]),
     ];
     for mut lights in wide {
-        lights.map_caustics(casters());
+        lights.map_caustics(casters(), 0.5);
         assert!(!lights.has_mapped());
     }
 }

@@ -222,3 +222,59 @@ fn widths_follow_the_arithmetic() {
     assert_eq!(found[1].width, 0.0);
     assert!((found[2].width - 0.5).abs() < 1e-6 && (found[3].width - 0.375).abs() < 1e-6);
 }
+
+/// A floor, seen from above or from below.
+struct Floor {
+    back: bool,
+}
+
+impl Point for Floor {
+    fn attribute(&self, _attribute: u32, _aside: Aside) -> Value {
+        Value::default()
+    }
+
+    fn geometry(&self, quantity: Quantity, _aside: Aside) -> Value {
+        match quantity {
+            Quantity::Normal => Value { v: if self.back { -Vec4::Z } else { Vec4::Z }, width: 0.0 },
+            Quantity::Backfacing => Value { v: Vec4::splat(f32::from(u8::from(self.back))), width: 0.0 },
+            _ => Value::default(),
+        }
+    }
+
+    fn steps(&self) -> [Vec3; 2] {
+        [Vec3::X, Vec3::Y]
+    }
+
+    fn tangents(&self, _attribute: u32) -> Option<[Vec3; 3]> {
+        None
+    }
+
+    fn world_normal(&self, normal: Vec3) -> Vec3 {
+        if self.back { -normal } else { normal }
+    }
+}
+
+/// Of a slope that rises with x by one in one: what is a hill from above is a hollow from below.
+#[test]
+fn a_bump_is_the_same_surface_from_both_sides() {
+    let number = |x: f32| Instruction::Constant { value: [x; 4] };
+    let normal = Instruction::Geometry { quantity: Quantity::Normal, aside: Aside::Here };
+    let bump = |invert| Instruction::Bump {
+        strength: 1,
+        distance: 1,
+        height: 0,
+        height_x: 1,
+        height_y: 0,
+        normal: 2,
+        invert,
+    };
+    for (invert, slope) in [(false, 1.0), (true, -1.0)] {
+        let instructions = vec![number(0.0), number(1.0), normal.clone(), bump(invert)];
+        let program = Program::new(instructions, 0).expect("a program");
+        let outward = Vec3::new(-slope, 0.0, 1.0).normalize();
+        for (back, expected) in [(false, outward), (true, -outward)] {
+            let found = program.run(&Floor { back }, &[])[3].v.truncate();
+            assert!((found - expected).length() < 1e-6, "{found} from behind: {back}");
+        }
+    }
+}

@@ -6,8 +6,8 @@ use glam::{DMat4, DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::effects_plan::Effect;
 use rgp_renderer::film::{CatcherSample, Film, PixelSample};
-use rgp_renderer::scene::record::{LampRecord, MaterialRecord, WorldRecord};
-use rgp_renderer::scene::{MeshArrays, SceneBuilder, visibility};
+use rgp_renderer::scene::record::{ClosureRecord, LampRecord, MaterialRecord, WorldRecord};
+use rgp_renderer::scene::{LampShape, MeshArrays, SceneBuilder, visibility};
 use rgp_renderer::settings::{FilmSettings, PixelFilter, RenderSettings, Switch};
 use support::*;
 
@@ -67,12 +67,36 @@ fn a_pixel_is_what_is_beside_catchers_and_their_shadow() {
     }
 }
 
-/// A screen over the half x > 0, black and unseen, below a point lamp.
-fn half_in_shadow(world: WorldRecord) -> Picture {
-    let mut builder = floor_below();
+/// Half of a pixel is nothing, half a catcher that has lost half of its light.
+#[test]
+fn half_a_pixel_of_a_catcher_is_half_as_much_shadow() {
+    let film = Film::new(
+        1,
+        1,
+        &FilmSettings { filter: PixelFilter::Box, filter_width: 1.0, ..FilmSettings::default() },
+    );
+    film.expect_catchers(true);
+    for (half, (share, is_caught)) in [(0.0, false), (1.0, true)].into_iter().enumerate() {
+        let (direct, without) = (Rgb::splat(0.25 * share), Rgb::splat(0.5 * share));
+        film.take_catchers(0, vec![CatcherSample { is_caught, without, ..CatcherSample::default() }]);
+        film.take(0, vec![PixelSample { direct, alpha: share, taken: true, ..PixelSample::default() }]);
+        film.finish_pass(1, half);
+    }
+    assert_eq!(film.combined(), [0.0, 0.0, 0.0, 0.25]);
+    assert_eq!(film.shadow_catcher(), [0.75; 3]);
+}
+
+/// A screen over the half x > 0, black and unseen.
+fn add_screen(builder: &mut SceneBuilder) {
     let p = |x: f32, y: f32| Vec3::new(x, y, 0.5);
     let screen = quad([p(0.0, -4.0), p(4.0, -4.0), p(4.0, 4.0), p(0.0, 4.0)]);
-    add(&mut builder, screen, &diffuse(0.0), UNSEEN);
+    add(builder, screen, &diffuse(0.0), UNSEEN);
+}
+
+/// A screen below a point lamp.
+fn half_in_shadow(world: WorldRecord) -> Picture {
+    let mut builder = floor_below();
+    add_screen(&mut builder);
     builder.add_lamp(lamp_above(10.0));
     builder.set_world(world);
     finish_and_render(builder, &few_rays())
@@ -90,7 +114,9 @@ fn halves(picture: &Picture) -> [Vec<[f32; 4]>; 2] {
 
 #[test]
 fn alpha_is_one_in_full_shadow_and_zero_in_full_light() {
-    let [light, shadow] = halves(&half_in_shadow(transparent(WorldRecord::default())));
+    // A world that the camera would see, were the film not transparent.
+    let seen = WorldRecord { visibility: visibility::CAMERA, ..world(0.25) };
+    let [light, shadow] = halves(&half_in_shadow(transparent(seen)));
     assert!(light.iter().all(|pixel| *pixel == [0.0; 4]), "{light:?}");
     assert!(shadow.iter().all(|pixel| *pixel == [0.0, 0.0, 0.0, 1.0]), "{shadow:?}");
 }
@@ -101,6 +127,36 @@ fn the_world_behind_is_darkened_where_the_film_is_not_transparent() {
     let [light, shadow] = halves(&half_in_shadow(seen));
     assert!(light.iter().all(|pixel| *pixel == [0.25, 0.25, 0.25, 1.0]), "{light:?}");
     assert!(shadow.iter().all(|pixel| *pixel == [0.0, 0.0, 0.0, 1.0]), "{shadow:?}");
+}
+
+/// A floor that sends as much light of its own as of a sun, behind a pane that shines and lets half through: in the shadow half
+/// of the floor's light is left, and half of half of the world behind it is seen.
+#[test]
+fn what_shines_before_a_catcher_and_what_it_emits() {
+    const OWN: f32 = 0.5 * std::f32::consts::FRAC_1_PI;
+    const PANE: f32 = 1.0;
+    const WORLD: f32 = 0.25;
+    let mut builder = SceneBuilder::default();
+    add(&mut builder, floor(8.0, 0.0), &emitter(0.5, OWN), CATCHER);
+    builder.set_camera(parallel_camera(DVec3::Z * 2.0, DVec3::ZERO, 1.0, PIXELS));
+    add_screen(&mut builder);
+    let pane = material(&[
+        ClosureRecord::Transparent { color: Rgb::splat(0.5) },
+        ClosureRecord::Emission { radiance: Rgb::splat(PANE) },
+    ]);
+    add(&mut builder, floor(8.0, 1.0), &pane, visibility::CAMERA);
+    let sun = lamp(LampShape::Sun { angle: 0.0 }, 1.0, DVec3::ZERO);
+    builder.add_lamp(LampRecord { visibility: UNSEEN | visibility::CATCHER, ..sun });
+    builder.set_world(WorldRecord { visibility: visibility::CAMERA, ..world(WORLD) });
+    let mut settings = few_rays();
+    // The pane is met by chance.
+    (settings.gather.rays, settings.gather.camera_samples) = (256, 256);
+    let picture = finish_and_render(builder, &settings);
+    for (half, left) in halves(&picture).iter().zip([1.0, 0.5]) {
+        let seen: Vec<f64> = half.iter().map(|pixel| f64::from(pixel[0])).collect();
+        assert_close(mean(&seen), f64::from(PANE + 0.5 * WORLD * left), 0.005);
+        assert!(half.iter().all(|pixel| pixel[3] == 1.0));
+    }
 }
 
 /// From anywhere on the floor, an endless wall hides half of the light of an even sky.
@@ -193,5 +249,7 @@ fn it_costs_where_it_is_called_for() {
     assert!(off.called_for && !off.computed && off.bytes == 0 && off.rays == 0, "{off:?}");
     assert_eq!(as_it_is, ordinary);
     settings.effects.shadow_catcher = Switch::On;
-    assert_eq!(plan(&settings, visibility::ALL).1, ordinary);
+    let (without_one, picture) = plan(&settings, visibility::ALL);
+    assert!(without_one.bytes == 0 && without_one.rays == 0, "{without_one:?}");
+    assert_eq!(picture, ordinary);
 }

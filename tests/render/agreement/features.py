@@ -14,6 +14,7 @@ from tests.render import (
     linking_cases,
     motion_cases,
     node_cases,
+    node_scene,
     path_cases,
     world_cases,
 )
@@ -37,7 +38,7 @@ def features() -> list[Feature]:
         *(Feature(f"path/{name}", partial(path_cases.build, name)) for name in path_cases.PATHS),
         *(Feature(f"motion/{name}", partial(motion_cases.build, name)) for name in motion_cases.MOTIONS),
         *(
-            Feature(f"node/{name}", partial(node_cases.node_scene, case), box_filter=True)
+            Feature(f"node/{name}", partial(node_scene.node_scene, case), box_filter=True)
             for name, case in node_cases.NODES.items()
         ),
         *(Feature(f"linking/{name}", partial(linking_cases.build, name)) for name in linking_cases.LINKINGS),

@@ -14,7 +14,7 @@ from .exclusions import EXCLUSIONS, NOT_RENDERED
 from .measure import LARGEST_MEAN_DIFFERENCE, LARGEST_RMS, SEEDS, Agreement
 from .sheet import contact_sheet
 
-_TITLES = {
+TITLES = {
     "lamp": "Lamps and the world",
     "world": "Worlds that differ from direction to direction",
     "material": "Shaders, under an even world and under a square lamp",
@@ -22,7 +22,9 @@ _TITLES = {
     "motion": "Motion blur",
     "node": "Nodes",
     "linking": "Light linking and shadow linking",
+    "catcher": "Shadow catchers",
 }
+"""By group."""
 
 
 def write(folder: Path, found: Mapping[str, Agreement], blender: str) -> None:
@@ -38,7 +40,7 @@ def write(folder: Path, found: Mapping[str, Agreement], blender: str) -> None:
         rows = list(entries)
         pairs = [(str(i), agreement.ours.mean, agreement.theirs.mean) for i, (_, agreement) in rows]
         write_png(pictures / f"{group}.png", contact_sheet(pairs))
-        parts += [f"## {_TITLES[group]}", f"![ours, Cycles](agreement/{group}.png)"]
+        parts += [f"## {TITLES[group]}", f"![ours, Cycles](agreement/{group}.png)"]
         parts.append(_table([(i, name, figures[name]) for i, (name, _) in rows]))
     parts += ["## Not rendered", _list(NOT_RENDERED)]
     (folder / "agreement.md").write_text("\n\n".join(parts) + "\n")

@@ -31,6 +31,7 @@ mod reflection;
 mod rough;
 mod sanitize;
 mod sheen;
+mod sheen_table;
 mod table;
 mod varying;
 

@@ -17,9 +17,6 @@ use crate::neighbors::{Candidate, KdTree, Nearest, Octahedral, Visitor};
 pub use photons::CausticPhotons;
 use photons::Photon;
 
-/// Photons that end a disk.
-const NEAREST: usize = 64;
-
 /// Disks are this many times as large as that of a typical photon at most (radius): beyond caustics there are next to none.
 const WIDEST: f32 = 4.0;
 
@@ -55,6 +52,8 @@ pub struct CausticMap {
     tree: KdTree,
     /// By place in the tree.
     arrivals: Vec<Arrival>,
+    /// Photons that end a disk.
+    nearest: usize,
     /// Of the largest disk (scene units).
     max_radius: f32,
 }
@@ -70,10 +69,11 @@ struct OneSurface<'a> {
 }
 
 impl CausticMap {
-    fn new(photons: &[Photon]) -> Self {
+    /// Of photons of which the `nearest` to a point end its disk.
+    fn new(photons: &[Photon], nearest: usize) -> Self {
         let (tree, order) = KdTree::new(photons.iter().map(|photon| photon.p));
         let arrivals = order.iter().map(|&number| photons[number as usize].arrival).collect();
-        let mut map = Self { tree, arrivals, max_radius: MAX_RADIUS };
+        let mut map = Self { tree, arrivals, nearest, max_radius: MAX_RADIUS };
         let places = (0..map.arrivals.len()).step_by(map.arrivals.len().div_ceil(TYPICAL).max(1));
         let mut radii: Vec<f32> = places
             .map(|place| {
@@ -118,7 +118,7 @@ impl CausticMap {
     }
 
     fn search(&self, p: Vec3, ng: Vec3, both_sides: bool) -> OneSurface<'_> {
-        let nearest = Nearest::new(NEAREST, self.max_radius);
+        let nearest = Nearest::new(self.nearest, self.max_radius);
         let mut search = OneSurface { map: self, p, ng, both_sides, nearest };
         self.tree.search(p, &mut search);
         search

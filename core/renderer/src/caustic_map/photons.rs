@@ -23,15 +23,16 @@ pub struct CausticPhotons {
 }
 
 impl CausticPhotons {
-    /// A map of each of the first `sets` sets; for any number of threads the same.
+    /// A map of each of the first `sets` sets, of which the `nearest` photons to a point say how bright it is; for any number
+    /// of threads the same.
     #[must_use]
-    pub fn into_maps(self, sets: usize) -> Vec<CausticMap> {
+    pub fn into_maps(self, sets: usize, nearest: usize) -> Vec<CausticMap> {
         let mut batches = self.batches.into_inner().unwrap_or_else(PoisonError::into_inner);
         batches.sort_by_key(|&(number, _)| number);
         let photons = |set: usize| -> Vec<Photon> {
             batches.iter().flat_map(|(_, batch)| batch[set].iter().copied()).collect()
         };
-        (0..sets).map(|set| CausticMap::new(&photons(set))).collect()
+        (0..sets).map(|set| CausticMap::new(&photons(set), nearest)).collect()
     }
 }
 

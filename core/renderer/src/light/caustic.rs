@@ -15,9 +15,6 @@ use crate::color::Rgb;
 use crate::sampling::PhotonSampler;
 use crate::scene::visibility;
 
-/// Lights that mirrors and glass see under less than this (sr) are left to photons.
-const SMALL: f32 = 0.5;
-
 /// Share of the photons that is aimed; the rest leaves as the light shines, for lights that shine only one way.
 const AIMED: f32 = 0.75;
 
@@ -49,10 +46,10 @@ impl From<u32> for Sight {
 }
 
 impl Lights {
-    /// Leaves the caustics of small lights to photons, which are aimed at `casters`.
-    pub fn map_caustics(&mut self, casters: Casters) {
+    /// Leaves the caustics of lights that `casters` see under less than `small` (sr) to photons, which are aimed there.
+    pub fn map_caustics(&mut self, casters: Casters, small: f32) {
         let is_mapped: Vec<bool> =
-            (0..self.photon_weights.len()).map(|light| self.solid_angle(light, &casters) < SMALL).collect();
+            (0..self.photon_weights.len()).map(|light| self.solid_angle(light, &casters) < small).collect();
         let tried = |light: usize| {
             if !is_mapped[light] {
                 return 0.0;

@@ -61,7 +61,7 @@ impl Work<'_> {
             sets,
         };
         let counts = photon_pass::run(lit, pass, &photons, self.progress)?;
-        let maps = photons.into_maps(sets);
+        let maps = photons.into_maps(sets, settings.caustic_nearest as usize);
         let seconds = clock.elapsed().as_secs_f64();
         stats.rays.photon += counts.segments;
         stats.photons.caustic = maps.iter().map(|map| map.len() as u64).sum();

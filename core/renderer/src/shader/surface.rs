@@ -19,13 +19,20 @@ fn ask(point: &impl Point, quantity: Quantity) -> Vec3 {
     point.geometry(quantity, Aside::Here).v.truncate()
 }
 
-/// The normal tilted by the slope of the height: Mikkelsen 2010, "Bump Mapping Unparametrized Surfaces on the GPU".
+/// True where the viewer is not on the modelled side.
+fn is_back(point: &impl Point) -> bool {
+    point.geometry(Quantity::Backfacing, Aside::Here).v.x > 0.0
+}
+
+/// The normal tilted by the slope of the height: Mikkelsen 2010, "Bump Mapping Unparametrized Surfaces on the GPU". Heights
+/// rise to the modelled side: seen from behind, hills are hollows.
 pub(super) fn bump(point: &impl Point, heights: &BumpHeights, strength: f32, normal: Vec3) -> Vec3 {
     let [x, y] = point.steps();
     let (of_x, of_y) = (y.cross(normal), normal.cross(x));
     let determinant = x.dot(of_x);
     let slope = of_x * (heights.aside[0] - heights.here) + of_y * (heights.aside[1] - heights.here);
-    let tilted = normal * determinant.abs() - slope * (heights.distance * determinant.signum());
+    let distance = if is_back(point) { -heights.distance } else { heights.distance };
+    let tilted = normal * determinant.abs() - slope * (distance * determinant.signum());
     let tilted = tilted.try_normalize().unwrap_or(normal);
     let strength = strength.max(0.0);
     (tilted * strength + normal * (1.0 - strength)).try_normalize().unwrap_or(normal)
@@ -51,7 +58,7 @@ pub(super) fn normal_map(
         }
         NormalSpace::Object => point.world_normal(n),
         NormalSpace::World => {
-            let back = point.geometry(Quantity::Backfacing, Aside::Here).v.x > 0.0;
+            let back = is_back(point);
             if back { -n } else { n }
         }
     };
@@ -62,7 +69,7 @@ pub(super) fn normal_map(
 /// The Tangent of the Geometry node: around the object's z axis, along the surface.
 pub(super) fn tangent(point: &impl Point, generated: Vec3) -> Vec3 {
     let around = point.world_normal(Vec3::new(0.5 - generated.y, generated.x - 0.5, 0.0));
-    let back = point.geometry(Quantity::Backfacing, Aside::Here).v.x > 0.0;
+    let back = is_back(point);
     let (around, ns) = (if back { -around } else { around }, ask(point, Quantity::Normal));
     ns.cross(around.cross(ns).normalize_or_zero())
 }
@@ -82,7 +89,7 @@ fn dielectric(cos: f32, eta: f32) -> f32 {
 
 /// The Fresnel node.
 pub(super) fn fresnel(point: &impl Point, ior: f32, normal: Vec3) -> f32 {
-    let back = point.geometry(Quantity::Backfacing, Aside::Here).v.x > 0.0;
+    let back = is_back(point);
     let ior = ior.max(1e-5);
     dielectric(ask(point, Quantity::Incoming).dot(normal), if back { 1.0 / ior } else { ior })
 }
@@ -91,7 +98,7 @@ pub(super) fn fresnel(point: &impl Point, ior: f32, normal: Vec3) -> f32 {
 pub(super) fn layer_weight(point: &impl Point, blend: f32, normal: Vec3, facing: bool) -> f32 {
     let cos = ask(point, Quantity::Incoming).dot(normal);
     if !facing {
-        let back = point.geometry(Quantity::Backfacing, Aside::Here).v.x > 0.0;
+        let back = is_back(point);
         let eta = (1.0 - blend).max(1e-5);
         return dielectric(cos, if back { eta } else { 1.0 / eta });
     }
