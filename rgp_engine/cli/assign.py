@@ -1,5 +1,6 @@
 """`--set GROUP.NAME=VALUE`: text to a property, with an answer that lists what exists when it does not fit."""
 
+import math
 from typing import Any
 
 from ..settings import setting_names
@@ -22,7 +23,10 @@ def assign(b_scene: Any, assignment: str) -> None:
     b_property = b_group.bl_rna.properties[setting]
     value = _parse(b_property, text.strip())
     if value is not None:
-        setattr(b_group, setting, value)
+        try:
+            setattr(b_group, setting, value)
+        except (ValueError, OverflowError):
+            value = None  # Blender has no room for such a number
     # Blender clamps without a word.
     kept = getattr(b_group, setting)
     if value is None or not _is_same(kept, value):
@@ -50,13 +54,14 @@ def _parse(b_property: Any, text: str) -> Any:
             if b_property.is_array:
                 values = tuple(number(part) for part in text.split("x"))
                 return values if len(values) == b_property.array_length else None
-            return number(text)
-    except ValueError:
+            value = number(text)
+            return None if math.isnan(value) else value
+    except (ValueError, OverflowError):
         return None
     if kind == "BOOLEAN":
         return {"true": True, "1": True, "false": False, "0": False}.get(text.lower())
     if kind == "ENUM":
-        return text if text in b_property.enum_items else None
+        return text if text in {item.identifier for item in b_property.enum_items} else None
     return text if kind == "STRING" else None
 
 

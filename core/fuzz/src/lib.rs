@@ -1,4 +1,5 @@
 //! Inputs for the fuzz targets: any bytes become records, programs and scenes, sound ones and broken ones.
+#![forbid(unsafe_code)]
 
 pub mod draw;
 pub mod programs;
