@@ -23,10 +23,7 @@ def assign(b_scene: Any, assignment: str) -> None:
     b_property = b_group.bl_rna.properties[setting]
     value = _parse(b_property, text.strip())
     if value is not None:
-        try:
-            setattr(b_group, setting, value)
-        except (ValueError, OverflowError):
-            value = None  # Blender has no room for such a number
+        setattr(b_group, setting, value)
     # Blender clamps without a word.
     kept = getattr(b_group, setting)
     if value is None or not _is_same(kept, value):
@@ -50,19 +47,32 @@ def _parse(b_property: Any, text: str) -> Any:
     kind = b_property.type
     try:
         if kind in ("INT", "FLOAT"):
-            number = int if kind == "INT" else float
+            number = _whole if kind == "INT" else _real
             if b_property.is_array:
                 values = tuple(number(part) for part in text.split("x"))
                 return values if len(values) == b_property.array_length else None
-            value = number(text)
-            return None if math.isnan(value) else value
-    except (ValueError, OverflowError):
+            return number(text)
+    except ValueError:
         return None
     if kind == "BOOLEAN":
         return {"true": True, "1": True, "false": False, "0": False}.get(text.lower())
     if kind == "ENUM":
         return text if text in {item.identifier for item in b_property.enum_items} else None
     return text if kind == "STRING" else None
+
+
+def _whole(text: str) -> int:
+    value = int(text)
+    if not -(2**31) <= value < 2**31:
+        raise ValueError("Blender has no room for it, and may even crash on it")
+    return value
+
+
+def _real(text: str) -> float:
+    value = float(text)
+    if math.isnan(value):
+        raise ValueError("Blender takes it, and nothing can be done with it")
+    return value
 
 
 def _is_same(found: Any, value: Any) -> bool:
