@@ -46,7 +46,7 @@ FULL = Scale(
     rays=paper.RAYS,
     many_rays=1024,
     photon_share=1.0,
-    truth_seconds=120.0,
+    truth_seconds=90.0,
     bins=("2x4", "4x8", "8x16", "16x32"),
     finest=(16, 32, 64, 128, 256, 512),
 )
@@ -119,23 +119,26 @@ class ScenePlan:
 
 def scene_plan(subject: Subject, scale: Scale, photons: Render, path: Render) -> ScenePlan:
     """The renders of a scene, from what its pilot has found."""
-    base = Job(
+    default = Job(
         subject.name,
         _size(subject, scale.divisor),
         PYRAMID,
         scale.rays,
         photons=_emitted(subject, scale, photons),
     )
-    reference = replace(base, estimator=PHOTON_MAP)
+    # What knows no finer cells is the same render in every table.
+    equal = replace(default, adaptive=0)
+    bases = {PYRAMID: default, PYRAMID_2006: replace(equal, estimator=PYRAMID_2006)}
+    reference = replace(equal, estimator=PHOTON_MAP)
     table1 = {PHOTON_MAP: reference}
     table2 = {PHOTON_MAP: reference}
-    for estimator in (PYRAMID, PYRAMID_2006):
+    for estimator, base in bases.items():
         for bins in scale.bins:
-            table1[f"{estimator} {bins}"] = replace(base, estimator=estimator, bins=bins)
+            table1[f"{estimator} {bins}"] = replace(base, bins=bins)
         for finest in scale.finest:
-            table2[f"{estimator} {finest}"] = replace(base, estimator=estimator, finest=finest, adaptive=0)
-    table3 = {name: replace(base, estimator=name) for name in (PHOTON_MAP, PYRAMID, PYRAMID_2006, *OTHERS)}
-    table3[PATH] = replace(base, estimator=PATH, photons=0)
+            table2[f"{estimator} {finest}"] = replace(base, finest=finest, adaptive=0)
+    table3 = {PHOTON_MAP: reference, **bases, **{name: replace(equal, estimator=name) for name in OTHERS}}
+    table3[PATH] = replace(equal, estimator=PATH, photons=0)
     many = {name: replace(table3[name], rays=scale.many_rays) for name in (PHOTON_MAP, PYRAMID)}
     table3 |= {many_rays_setting(name, scale.many_rays): job for name, job in many.items()}
     return ScenePlan(

@@ -36,7 +36,7 @@ def render(value, *, photon_pass=1.0, build=0.5, gather=2.0, size=1000, **photon
 
 @pytest.fixture
 def plan():
-    # Half a second for 16 rays: 120 s are 1920 rays for each half.
+    # Half a second for 16 rays: 90 s are 1440 rays for each half.
     return scene_plan(CORNELL, FULL, render(0.0), render(0.0, gather=0.5))
 
 
@@ -132,7 +132,7 @@ def test_the_command_of_a_render_names_its_file_size_and_every_setting():
 def test_photons_give_the_papers_memory_and_the_truth_its_time(plan):
     # 257.1 MB at 28 bytes are 9,182,143 photons; each that is emitted lands twice.
     assert {job.photons for table in plan.tables.values() for job in table.values()} == {4_591_071, 0}
-    assert [(job.rays, job.camera_samples) for job in plan.truth] == [(1920, 480)] * 2
+    assert [(job.rays, job.camera_samples) for job in plan.truth] == [(1440, 360)] * 2
     assert plan.truth[0].seed != plan.truth[1].seed
     assert all(job.seed not in {truth.seed for truth in plan.truth} for job in plan.timed.values())
 

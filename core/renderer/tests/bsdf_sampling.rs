@@ -125,8 +125,12 @@ fn weight_is_value_times_cosine_over_density() {
             let bsdf = material.bsdf(wo, Vec3::Z, Vec3::new(0.2, 0.1, 1.0).normalize());
             let set = LobeSet::NON_DELTA;
             let Some(sample) = bsdf.sample(rng.next(), [rng.next(), rng.next()], set, mode) else { continue };
-            let cos = sample.wi.dot(bsdf.frame.ns).abs();
-            let pdf = bsdf.pdf(sample.wi, set);
+            // Photons spread with the cosine to the geometric normal, and have densities of their own.
+            let (normal, pdf) = match mode {
+                RADIANCE => (bsdf.frame.ns, bsdf.pdf(sample.wi, set)),
+                IMPORTANCE => (bsdf.frame.ng, sample.pdf_solid_angle),
+            };
+            let cos = sample.wi.dot(normal).abs();
             let value = bsdf.eval(sample.wi, set, mode);
             assert!((pdf / sample.pdf_solid_angle - 1.0).abs() < 1e-4);
             for k in 0..3 {

@@ -354,8 +354,11 @@ impl<'a> MaterialRef<'a> {
     pub(super) fn bsdf(self, wo: Vec3, ng: Vec3, ns: Vec3) -> Bsdf<'a> {
         let material: &PreparedMaterial = &self;
         let mut frame = ShadingFrame::new(wo, ng, ns);
-        if !material.is_plain() && !material.is_in_part_diffuse() {
-            frame = frame.mirroring_above(wo);
+        if !material.is_plain() {
+            frame = frame.bent_below(wo);
+            if !material.is_in_part_diffuse() {
+                frame = frame.mirroring_above(wo);
+            }
         }
         let cos = wo.dot(frame.ns).clamp(0.0, 1.0);
         let (mut emission, transparency) = (material.bare_emission, material.straight);

@@ -25,6 +25,7 @@ mod ggx;
 mod lobe;
 mod material;
 mod normals;
+mod photon;
 mod principled;
 mod reflection;
 mod rough;
@@ -119,7 +120,7 @@ pub enum TransportMode {
 /// Normals at a hit, on the side of `wo`.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadingFrame {
-    /// Shading normal; bent where needed so that `wo` is above it.
+    /// Shading normal. Where lobes depend on the viewer it is bent, if needed, so that `wo` is above it.
     pub ns: Vec3,
     /// Geometric normal.
     pub ng: Vec3,
@@ -137,20 +138,22 @@ impl ShadingFrame {
     /// Turns both normals to the side of `wo` that the geometric one says.
     #[must_use]
     pub fn new(wo: Vec3, ng: Vec3, ns: Vec3) -> Self {
-        const GRAZING: f32 = 0.01;
-        let cos_g = wo.dot(ng);
-        let entering = cos_g >= 0.0;
+        let entering = wo.dot(ng) >= 0.0;
         let sign = if entering { 1.0 } else { -1.0 };
-        let (ng, mut ns) = (ng * sign, ns * sign);
+        let (ng, ns) = (ng * sign, ns * sign);
         let cos_normals = ns.dot(ng);
-        if cos_normals <= 0.0 || cos_normals.is_nan() {
-            ns = ng;
+        Self { ns: if cos_normals > 0.0 { ns } else { ng }, ng, entering }
+    }
+
+    /// The frame with a shading normal that `wo` is above.
+    #[must_use]
+    fn bent_below(self, wo: Vec3) -> Self {
+        const GRAZING: f32 = 0.01;
+        let (cos, least) = (wo.dot(self.ns), wo.dot(self.ng).min(GRAZING));
+        if cos >= least {
+            return self;
         }
-        let (cos, least) = (wo.dot(ns), (cos_g * sign).min(GRAZING));
-        if cos < least {
-            ns = (ns + wo * (least - cos)).normalize();
-        }
-        Self { ns, ng, entering }
+        Self { ns: (self.ns + wo * (least - cos)).normalize(), ..self }
     }
 
     /// The frame with a shading normal that mirrors `wo` to above the surface: half-way to the mirrored direction, which is
@@ -170,15 +173,11 @@ impl ShadingFrame {
     }
 
     /// Flux of a photon from `wo` times this is what to store for an irradiance that belongs to the shading normal, as
-    /// radiance paths see it: |wo·ns| / |wo·ng|.
+    /// radiance paths see it: wo·ns / wo·ng, and nothing from below the shading normal.
     #[must_use]
     pub fn irradiance_factor(&self, wo: Vec3) -> f32 {
-        wo.dot(self.ns).abs() / wo.dot(self.ng).abs().max(1e-3)
-    }
-
-    /// What photons need where shading and geometric normal differ: |wo·ns| |wi·ng| / (|wo·ng| |wi·ns|).
-    fn correction(&self, wo: Vec3, wi: Vec3) -> f32 {
-        self.irradiance_factor(wo) / self.irradiance_factor(wi).max(1e-3)
+        let (cos_s, cos_g) = (wo.dot(self.ns), wo.dot(self.ng));
+        (cos_s * cos_g.signum()).max(0.0) / cos_g.abs().max(1e-3)
     }
 
     /// The normals as they were before turning them.
@@ -300,7 +299,10 @@ impl Bsdf<'_> {
     /// The BSDF (sr⁻¹) of the lobes of `set` for `wi`, without the cosine; delta lobes give nothing.
     #[must_use]
     pub fn eval(&self, wi: Vec3, set: LobeSet, mode: TransportMode) -> Rgb {
-        self.value_in(mode, self.eval_with_pdf(wi, set).0, wi, set)
+        match mode {
+            TransportMode::Radiance => self.eval_with_pdf(wi, set).0,
+            TransportMode::Importance => self.eval_adjoint(wi, set),
+        }
     }
 
     /// Density per solid angle of `sample` restricted to `set`, at `wi`; delta lobes count as not being `wi`.
@@ -315,7 +317,8 @@ impl Bsdf<'_> {
         let (side_s, side_g) = (wi.dot(self.frame.ns), wi.dot(self.frame.ng));
         let (above, below) = (side_s > 0.0 && side_g > 0.0, side_s < 0.0 && side_g < 0.0);
         let (mut value, mut pdf, mut total) = (Rgb::BLACK, 0.0, 0.0);
-        if !(above || below) || self.wo.dot(self.frame.ns) <= 0.0 {
+        let is_seen = self.material.is_plain() || self.wo.dot(self.frame.ns) > 0.0;
+        if !(above || below) || !is_seen {
             return (value, pdf);
         }
         for lobe in self.lobes(set) {
@@ -337,35 +340,25 @@ impl Bsdf<'_> {
     /// where there is no such lobe or the direction falls on the wrong side, which is part of the estimate: its value is 0.
     #[must_use]
     pub fn sample(&self, u_lobe: f32, u: [f32; 2], set: LobeSet, mode: TransportMode) -> Option<BsdfSample> {
-        let total: f32 = self.lobes(set).map(|lobe| lobe.albedo.mean()).sum();
+        if mode == TransportMode::Importance {
+            return self.sample_photon(u_lobe, u, set);
+        }
+        let total = self.chances(set);
         let (lobe, chance) = self.choose(u_lobe * total, set)?;
         let own = (lobe.normal != 0).then(|| self.own_frame(lobe));
         let frame = own.as_ref().unwrap_or(&self.frame);
-        let wi = lobe.sample(frame, self.wo, u)?;
-        let (side_s, side_g) = (wi.dot(frame.ns), wi.dot(frame.ng));
-        let is_transmission = lobe.is_transmission();
-        if (side_s < 0.0) != is_transmission || (side_g < 0.0) != is_transmission {
-            return None;
-        }
-        let is_delta = lobe.class == LobeSet::DELTA;
-        let (weight, pdf_solid_angle) = if is_delta {
+        let wi = sample_on_side(lobe, frame, self.wo, u)?;
+        if lobe.class == LobeSet::DELTA {
             let chance = chance / total;
-            (self.delta_value(lobe, frame, wi, mode) / chance, chance)
-        } else {
-            let (value, pdf) = self.eval_with_pdf(wi, set);
-            let cos = if own.is_some() { side_g } else { side_s };
-            (self.value_in(mode, value, wi, set) * (cos.abs() / pdf), pdf)
-        };
-        let usable = weight.is_finite() && !weight.is_black() && pdf_solid_angle > 0.0;
-        usable.then(|| BsdfSample {
-            wi,
-            weight,
-            pdf_solid_angle,
-            class: lobe.class,
-            is_delta,
-            is_transmission,
-            eta_squared: lobe.eta() * lobe.eta(),
-        })
+            return sample_of(lobe, wi, lobe.delta_factor(frame, self.wo) / chance, chance);
+        }
+        let (value, pdf) = self.eval_with_pdf(wi, set);
+        sample_of(lobe, wi, value * (wi.dot(self.frame.ns).abs() / pdf), pdf)
+    }
+
+    /// What the chances of the lobes of `set` are shares of.
+    fn chances(&self, set: LobeSet) -> f32 {
+        self.lobes(set).map(|lobe| lobe.albedo.mean()).sum()
     }
 
     /// The lobe of `set` whose interval of summed albedos holds `position`, and the interval's length.
@@ -384,35 +377,26 @@ impl Bsdf<'_> {
         }
         last
     }
+}
 
-    /// Weight of a delta lobe about the normal of `frame`, its chance aside.
-    fn delta_value(&self, lobe: &Lobe, frame: &ShadingFrame, wi: Vec3, mode: TransportMode) -> Rgb {
-        if mode == TransportMode::Radiance {
-            return lobe.delta_factor(frame, self.wo);
-        }
-        let adjoint = self.adjoint(wi);
-        let back = adjoint.lobes.iter().find(|other| other.slot == lobe.slot);
-        let value = back.map_or(Rgb::BLACK, |back| match back.normal {
-            0 => back.delta_factor(&adjoint.frame, wi),
-            _ => back.delta_factor(&adjoint.own_frame(back), wi),
-        });
-        value * (frame.correction(self.wo, wi) / (lobe.eta() * lobe.eta()))
-    }
+/// A direction of `lobe` about the normal of `frame`, if it is on the side of both normals that the lobe sends light to.
+fn sample_on_side(lobe: &Lobe, frame: &ShadingFrame, wo: Vec3, u: [f32; 2]) -> Option<Vec3> {
+    let wi = lobe.sample(frame, wo, u)?;
+    let is_transmission = lobe.is_transmission();
+    let is_on_side = |normal: Vec3| (wi.dot(normal) < 0.0) == is_transmission;
+    (is_on_side(frame.ns) && is_on_side(frame.ng)).then_some(wi)
+}
 
-    /// The value in `mode`, given the one in radiance mode. A Lambert lobe alone needs no second look: it is the same from
-    /// everywhere.
-    fn value_in(&self, mode: TransportMode, value: Rgb, wi: Vec3, set: LobeSet) -> Rgb {
-        if mode == TransportMode::Radiance {
-            return value;
-        }
-        let seen_back =
-            if self.material.is_plain() { value } else { self.adjoint(wi).eval_with_pdf(self.wo, set).0 };
-        seen_back * self.frame.correction(self.wo, wi)
-    }
-
-    /// The same hit seen from `wi`.
-    fn adjoint(&self, wi: Vec3) -> Self {
-        let [ng, ns] = self.frame.unturned();
-        self.material.clone().bsdf(wi, ng, ns)
-    }
+/// The direction `wi` of `lobe`, if it is of use.
+fn sample_of(lobe: &Lobe, wi: Vec3, weight: Rgb, pdf_solid_angle: f32) -> Option<BsdfSample> {
+    let usable = weight.is_finite() && !weight.is_black() && pdf_solid_angle > 0.0;
+    usable.then(|| BsdfSample {
+        wi,
+        weight,
+        pdf_solid_angle,
+        class: lobe.class,
+        is_delta: lobe.class == LobeSet::DELTA,
+        is_transmission: lobe.is_transmission(),
+        eta_squared: lobe.eta() * lobe.eta(),
+    })
 }

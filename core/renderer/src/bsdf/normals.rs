@@ -141,7 +141,7 @@ impl Normals {
 
     /// The frame about a normal, which is bent so that `wo` is above it.
     fn frame(&self, normal: u8, wo: Vec3, frame: &ShadingFrame) -> ShadingFrame {
-        ShadingFrame::new(wo, frame.unturned()[0], self.vector(normal))
+        ShadingFrame::new(wo, frame.unturned()[0], self.vector(normal)).bent_below(wo)
     }
 
     /// Cosines of the viewer to the normals of a closure.
