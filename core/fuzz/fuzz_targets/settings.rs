@@ -9,7 +9,8 @@ use rgp_renderer::render::check_memory;
 use rgp_renderer::settings::{KNOBS, Kind, Knob, RenderSettings, parse_bins};
 use serde_json::{Map, Value, json};
 
-const WORDS: &[&str] = &["", "auto", "ON", "8x16", "32x64", "33x1", "0x0", "-1x1", "+1x1", "1x1x1", "x", "54", "１x１"];
+const WORDS: &[&str] =
+    &["", "auto", "ON", "8x16", "32x64", "33x1", "0x0", "-1x1", "+1x1", "1x1x1", "x", "54", "１x１"];
 
 fuzz_target!(|bytes: &[u8]| {
     let mut draw = Draw(bytes);
@@ -27,7 +28,12 @@ fuzz_target!(|bytes: &[u8]| {
     let Ok(settings) = RenderSettings::from_json(&Value::Object(groups)) else { return };
     let accepted = serde_json::to_value(&settings).expect("settings can be written");
     for knob in KNOBS {
-        assert!(is_allowed(knob, &accepted[knob.group][knob.name]), "{}.{} in {accepted}", knob.group, knob.name);
+        assert!(
+            is_allowed(knob, &accepted[knob.group][knob.name]),
+            "{}.{} in {accepted}",
+            knob.group,
+            knob.name
+        );
     }
     assert_eq!(RenderSettings::from_json(&accepted).expect("what was accepted is accepted again"), settings);
     let film = Film::new(3, 2, &settings.film);
@@ -61,7 +67,11 @@ fn anything(draw: &mut Draw<'_>, depth: usize) -> Value {
         4 => json!(draw.flag()),
         5 => Value::Null,
         6 => Value::Array(draw.list(3, |draw| anything(draw, depth - 1))),
-        _ => Value::Object(draw.list(3, |draw| ((*draw.choice(WORDS)).into(), anything(draw, depth - 1))).into_iter().collect()),
+        _ => Value::Object(
+            draw.list(3, |draw| ((*draw.choice(WORDS)).into(), anything(draw, depth - 1)))
+                .into_iter()
+                .collect(),
+        ),
     }
 }
 

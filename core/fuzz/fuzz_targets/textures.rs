@@ -5,8 +5,7 @@ use libfuzzer_sys::fuzz_target;
 use rgp_fuzz::draw::Draw;
 use rgp_renderer::shader::{Encoding, Extension, Interpolation, Pixels, Texture};
 
-const EXTENSIONS: [Extension; 4] =
-    [Extension::Repeat, Extension::Extend, Extension::Clip, Extension::Mirror];
+const EXTENSIONS: [Extension; 4] = [Extension::Repeat, Extension::Extend, Extension::Clip, Extension::Mirror];
 const INTERPOLATIONS: [Interpolation; 3] =
     [Interpolation::Closest, Interpolation::Linear, Interpolation::Cubic];
 

@@ -9,8 +9,8 @@ use rgp_renderer::shader::{
 };
 
 use crate::records::Kind::{
-    Below, Flag, List, Matrix, Maybe, MaybeWhole, Name, Number, Numbers, One, Record, Register, Registers, Row,
-    Rows, Signed, Table, Texture, Whole, Word,
+    Below, Flag, List, Matrix, Maybe, MaybeWhole, Name, Number, Numbers, One, Record, Register, Registers,
+    Row, Rows, Signed, Table, Texture, Whole, Word,
 };
 use crate::records::{Fields, Kind, words};
 
@@ -23,15 +23,7 @@ const DIMENSIONS: (&str, Kind) = ("dimensions", Below(6));
 const PATTERN: Kind = One(
     "kind",
     &[
-        (
-            "noise",
-            &[
-                DIMENSIONS,
-                ("fractal", Word(words::<Fractal>)),
-                ("normalize", Flag),
-                ("color", Flag),
-            ],
-        ),
+        ("noise", &[DIMENSIONS, ("fractal", Word(words::<Fractal>)), ("normalize", Flag), ("color", Flag)]),
         ("white_noise", &[DIMENSIONS, ("color", Flag)]),
         (
             "voronoi",
@@ -65,13 +57,7 @@ const PATTERN: Kind = One(
     ],
 );
 
-const IMAGE: Fields = &[
-    ("texture", Texture),
-    ("vector", Register),
-    EXTENSION,
-    INTERPOLATION,
-    UNASSOCIATE,
-];
+const IMAGE: Fields = &[("texture", Texture), ("vector", Register), EXTENSION, INTERPOLATION, UNASSOCIATE];
 
 const TILE: Fields = &[("column", Whole(3)), ("row", Whole(3)), ("texture", Texture)];
 
@@ -87,10 +73,7 @@ pub const INSTRUCTIONS: &[(&str, Fields)] = &[
     ("mapping", &[("vector", Register), ("location", Register), ("rotation", Register), ("scale", Register)]),
     ("normalize", &[("vector", Register)]),
     ("image", IMAGE),
-    (
-        "tiled_image",
-        &[("tiles", List(3, TILE)), ("vector", Register), EXTENSION, INTERPOLATION, UNASSOCIATE],
-    ),
+    ("tiled_image", &[("tiles", List(3, TILE)), ("vector", Register), EXTENSION, INTERPOLATION, UNASSOCIATE]),
     ("panorama", &[("vector", Register), ("projection", Word(words::<PanoramaProjection>))]),
     (
         "sun_disk",
@@ -120,19 +103,13 @@ pub const INSTRUCTIONS: &[(&str, Fields)] = &[
     ("combine", &[("x", Register), ("y", Register), ("z", Register)]),
     ("luminance", &[("of", Register)]),
     ("mean", &[("of", Register)]),
-    (
-        "math",
-        &[("function", Word(words::<MathFunction>)), ("a", Register), ("b", Register), ("c", Register)],
-    ),
+    ("math", &[("function", Word(words::<MathFunction>)), ("a", Register), ("b", Register), ("c", Register)]),
     (
         "vector_math",
         &[("function", Word(words::<VectorFunction>)), ("a", Register), ("b", Register), ("c", Register)],
     ),
     ("mix", &[("factor", Register), ("a", Register), ("b", Register)]),
-    (
-        "blend",
-        &[("mode", Word(words::<BlendMode>)), ("factor", Register), ("a", Register), ("b", Register)],
-    ),
+    ("blend", &[("mode", Word(words::<BlendMode>)), ("factor", Register), ("a", Register), ("b", Register)]),
     ("clamp", &[("value", Register), ("low", Register), ("high", Register)]),
     ("gamma", &[("color", Register), ("gamma", Register)]),
     ("bright_contrast", &[("color", Register), ("bright", Register), ("contrast", Register)]),
@@ -254,13 +231,8 @@ pub const LAMP: Fields = &[
     ("links", Record(LINKS)),
 ];
 
-const LENS: Fields = &[
-    RADIUS,
-    ("blades", Whole(8)),
-    ("rotation", Number),
-    ("ratio", Number),
-    ("focus_distance", Number),
-];
+const LENS: Fields =
+    &[RADIUS, ("blades", Whole(8)), ("rotation", Number), ("ratio", Number), ("focus_distance", Number)];
 
 const CAMERA_STEP: Fields = &[("world_from_camera", Matrix), ("window", Numbers(4))];
 
