@@ -20,7 +20,7 @@ ADDON_TARGETS = ("node_compiler", "settings")
 SEEDS = 64
 OPTIONS = ("-rss_limit_mb=3000", "-timeout=60", "-max_len=4096", "-len_control=0", "-detect_leaks=0")
 """Of libFuzzer: an input that takes more memory (MB) or time (s) is a finding; long ones are tried from the start."""
-QUIET = ("-verbosity=0", "-print_final_stats=1")
+QUIET = ("-verbosity=0", "-print_funcs=0", "-print_final_stats=1")
 
 
 def fuzz_by_coverage(python: Path, bpy: str, embree: Path, seconds: int) -> list[str]:
