@@ -74,6 +74,18 @@ def test_nodes_that_branch_and_meet_again_are_not_followed_on_every_way(scene, r
     assert any("too long a chain" in text for text in problems()) == (kind != "Math"), problems()
 
 
+def test_a_sky_whose_sun_is_at_no_height(scene, rendered, problems):
+    build.lit_room()
+    b_material, b_tree, b_output = build.material()
+    bpy.data.objects["Floor"].data.materials.append(b_material)
+    b_sky, b_diffuse = b_tree.nodes.new("ShaderNodeTexSky"), b_tree.nodes.new("ShaderNodeBsdfDiffuse")
+    b_sky.sun_elevation = math.inf
+    build.connect(b_tree, b_sky, b_diffuse, "Color")
+    build.connect(b_tree, b_diffuse, b_output, "Surface")
+    assert np.isfinite(rendered()).all()
+    assert any("a typical value is used" in text for text in problems()), problems()
+
+
 def test_no_light(scene, rendered, problems):
     build.add_camera()
     build.add_object("Floor", build.quad())

@@ -138,7 +138,10 @@ class Compiler(Folder):
         return any(isinstance(found, Output) and self.varies(found) for found in behind)
 
     def _emit_node(self, source: Output) -> Operand:
-        found = NODES[source.b_node.type](self, source)
+        try:
+            found = NODES[source.b_node.type](self, source)
+        except (ValueError, OverflowError):
+            found = None  # beyond all numbers, where there is no result
         if found is not None:
             return found
         default = self._silent.typical(source)
