@@ -13,7 +13,7 @@ from typing import Any
 
 import bpy
 
-from benchmarks import capture, effects_saved, export_speed, render_speed
+from benchmarks import capture, effects_saved, export_speed, pyramid_build, render_speed
 from benchmarks.figures import Figure, Row, Target, details, machine, table
 from rgp_engine import native
 
@@ -24,7 +24,10 @@ _SCENES = (
     _ROOT.parent / "shared/scenes/sibenik.blend",
 )
 
+_BUILD_SCENE = _ROOT / "scenes/nave.blend"
+
 _GATHER_OVER_TRACE = Target(1.0)
+_BUILD_OVER_PHOTON_PASS = Target(0.2)
 _PYRAMID_BUILD_SECONDS = Target(1.0, "s")
 _DIFFUSE_PYRAMID_BYTES = Target(40e6, "bytes")
 _EXPORT_SECONDS = Target(2.0, "s")
@@ -48,6 +51,8 @@ def main() -> None:
         rows += _render_rows(blend.stem, speed)
         saved = effects_saved.measure(blend.stem, scene, options.threads, options.repetitions, _say)
         rows += _effect_rows(blend.stem, saved)
+    ratio = pyramid_build.measure(_BUILD_SCENE, options.threads, options.repetitions, _say)
+    rows.append(Row("pyramid_build_over_photon_pass", _BUILD_SCENE.stem, ratio, _BUILD_OVER_PHOTON_PASS))
     exports = export_speed.measure(options.repetitions, _say)
     rows += [
         Row("export_million_triangles_seconds", kind, figure, _EXPORT_SECONDS)

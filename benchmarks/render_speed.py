@@ -45,7 +45,7 @@ def measure(
     settings = {**SETTINGS, "render": {"threads": threads}}
     renders, ratios = [], []
     for repetition in range(repetitions):
-        stats = _render(scene, settings)
+        stats = render(scene, settings)
         floor = native.core().trace_floor(scene, settings, str(native.embree_library()))
         gather = stats["seconds"]["gather"]
         ratios.append(gather / floor["seconds"])
@@ -75,7 +75,7 @@ def core_scene(blend: Path) -> "rgp_core.Scene":
     return capture(b_scene).scene
 
 
-def _render(scene: "rgp_core.Scene", settings: dict[str, dict[str, Any]]) -> dict[str, Any]:
+def render(scene: "rgp_core.Scene", settings: dict[str, dict[str, Any]]) -> dict[str, Any]:
     """Stats of one render."""
     session = native.core().Session(scene, settings, str(native.embree_library()))
     session.start()

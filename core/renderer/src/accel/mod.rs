@@ -12,7 +12,7 @@ pub use packet::{LANES, Packet};
 use crate::error::RenderError;
 use crate::light::LampProxy;
 use crate::progress::Progress;
-use crate::scene::{MIDDLE, Mesh, Scene, visibility};
+use crate::scene::{Mesh, Object, Scene, visibility};
 
 /// Rays leave a surface this far along its geometric normal (scene units): some ulp of a coordinate of the unit cube,
 /// above the rounding of a hit and below anything modelled.
@@ -53,7 +53,7 @@ pub struct Hit {
     pub primitive: u32,
 }
 
-/// Precomputed for triangles that are in scene space.
+/// Precomputed for the triangles of every mesh. Instances have materials of their own.
 #[derive(Clone, Copy, Debug)]
 struct TriangleRecord {
     ng: Vec3,
@@ -64,8 +64,8 @@ struct TriangleRecord {
 enum ObjectRecord {
     /// Index of the first triangle's record.
     Flat(usize),
-    /// Normal matrix of an instance.
-    Instance(DMat3),
+    /// Normal matrix of an instance, and the record of its mesh's first triangle, whose normal is the mesh's own.
+    Instance(DMat3, usize),
 }
 
 /// The ray tracer over one scene.
@@ -100,23 +100,24 @@ impl<'a> Accel<'a> {
             !progress.is_cancelled()
         };
         let mut top = SceneBuilder::new(&device, BuildQuality::High)?;
-        let mut shared: Vec<(*const Mesh, CommittedScene)> = Vec::new();
+        let mut shared: Vec<(*const Mesh, CommittedScene, usize)> = Vec::new();
         let (mut records, mut objects) = (Vec::new(), Vec::with_capacity(scene.objects.len()));
         for (id, object) in scene.objects.iter().enumerate() {
             progress.check()?;
             let id = geometry_id(id)?;
             if let Some(transform) = &object.scene_from_mesh {
                 let key = std::sync::Arc::as_ptr(&object.mesh);
-                let known =
-                    shared.iter().rev().find(|(mesh, _)| *mesh == key).map(|(_, built)| built.clone());
-                let built = match known {
-                    Some(built) => built,
+                let known = shared.iter().rev().find(|(mesh, ..)| *mesh == key);
+                let known = known.map(|(_, built, first)| (built.clone(), *first));
+                let (built, first) = match known {
+                    Some(known) => known,
                     None => {
                         let mut builder = SceneBuilder::new(&device, BuildQuality::High)?;
                         add_mesh(&mut builder, 0, &object.mesh, moves, u32::MAX)?;
                         let built = builder.commit(&keep_going)?;
-                        shared.push((key, built.clone()));
-                        built
+                        shared.push((key, built.clone(), records.len()));
+                        records.extend(records_of(object));
+                        (built, records.len() - object.mesh.triangles.len())
                     }
                 };
                 let steps = if moves && !object.motion.is_empty() {
@@ -125,14 +126,11 @@ impl<'a> Accel<'a> {
                     vec![columns(transform)]
                 };
                 top.add_moving_instance(id, &built, &steps, object.visibility)?;
-                objects.push(ObjectRecord::Instance(transform.matrix3.inverse().transpose()));
+                objects.push(ObjectRecord::Instance(transform.matrix3.inverse().transpose(), first));
             } else {
                 add_mesh(&mut top, id, &object.mesh, moves, object.visibility)?;
                 objects.push(ObjectRecord::Flat(records.len()));
-                records.extend((0..object.mesh.triangles.len()).map(|primitive| TriangleRecord {
-                    ng: normal_of(&object.mesh, primitive),
-                    material: u32::try_from(object.material(primitive)).unwrap_or(0),
-                }));
+                records.extend(records_of(object));
             }
         }
         for (i, proxy) in proxies.iter().enumerate() {
@@ -193,28 +191,14 @@ impl<'a> Accel<'a> {
         self.embree.occluded(&embree_ray(ray, t_far))
     }
 
-    /// True when nothing lies between two points.
-    #[must_use]
-    pub fn sees(&self, p: Vec3, q: Vec3) -> bool {
-        let ray = EmbreeRay {
-            origin: p.to_array(),
-            direction: (q - p).to_array(),
-            t_near: 0.0,
-            t_far: 1.0,
-            mask: visibility::DIFFUSE,
-            time: MIDDLE,
-        };
-        !self.embree.occluded(&ray)
-    }
-
     /// Unit geometric normal of a triangle, outward as modelled, in the middle of the shutter's time.
     #[must_use]
     #[inline]
     pub fn geometric_normal(&self, object: u32, primitive: u32) -> Vec3 {
         match &self.objects[object as usize] {
             ObjectRecord::Flat(first) => self.records[first + primitive as usize].ng,
-            ObjectRecord::Instance(normal_matrix) => {
-                let local = normal_of(&self.scene.objects[object as usize].mesh, primitive as usize);
+            ObjectRecord::Instance(normal_matrix, first) => {
+                let local = self.records[first + primitive as usize].ng;
                 (*normal_matrix * local.as_dvec3()).normalize_or_zero().as_vec3()
             }
         }
@@ -237,7 +221,7 @@ impl<'a> Accel<'a> {
     pub fn material(&self, object: u32, primitive: u32) -> usize {
         match &self.objects[object as usize] {
             ObjectRecord::Flat(first) => self.records[first + primitive as usize].material as usize,
-            ObjectRecord::Instance(_) => self.scene.objects[object as usize].material(primitive as usize),
+            ObjectRecord::Instance(..) => self.scene.objects[object as usize].material(primitive as usize),
         }
     }
 
@@ -251,7 +235,7 @@ impl<'a> Accel<'a> {
         let n = *a * (1.0 - u - v) + *b * u + *c * v;
         let n = match &self.objects[hit.object as usize] {
             ObjectRecord::Flat(_) => n,
-            ObjectRecord::Instance(normal_matrix) => (*normal_matrix * n.as_dvec3()).as_vec3(),
+            ObjectRecord::Instance(normal_matrix, _) => (*normal_matrix * n.as_dvec3()).as_vec3(),
         };
         n.try_normalize().unwrap_or(ng)
     }
@@ -286,6 +270,14 @@ fn add_mesh(
         steps.iter().map(|step| step.iter().map(|p| p.to_array()).collect()).collect();
     let steps: Vec<&[[f32; 3]]> = steps.iter().map(Vec::as_slice).collect();
     Ok(builder.add_moving_triangles(id, &steps, &mesh.triangles, mask)?)
+}
+
+/// Of the triangles of an object's mesh.
+fn records_of(object: &Object) -> impl Iterator<Item = TriangleRecord> {
+    (0..object.mesh.triangles.len()).map(|primitive| TriangleRecord {
+        ng: normal_of(&object.mesh, primitive),
+        material: u32::try_from(object.material(primitive)).unwrap_or(0),
+    })
 }
 
 fn normal_of(mesh: &Mesh, primitive: usize) -> Vec3 {

@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicI64, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 use super::bins::{BinCorners, DirectionBins, LANES, Lanes};
 use super::layout::Layout;
@@ -102,7 +103,7 @@ impl<'a> Accumulator<'a> {
         let all_bins = bins.unwrap_or(DirectionBins { elevation: 1, azimuth: 1 });
         Self {
             layout,
-            cells: cells.map(|n| std::iter::repeat_with(Default::default).take(n).collect()).collect(),
+            cells: cells.map(|n| (0..n).into_par_iter().map(|_| Default::default()).collect()).collect(),
             glossy: glossy_cells
                 .map(|n| {
                     std::iter::repeat_with(Mutex::default).take(if bins.is_some() { n } else { 0 }).collect()
@@ -227,27 +228,41 @@ impl<'a> Accumulator<'a> {
         glossy.sum()
     }
 
-    /// What was added, by level and place.
-    pub(super) fn into_sums(self) -> Sums {
-        let sum = |cell: AtomicCell| CellSum {
-            flux: cell.flux.map(|set| set.map(AtomicI64::into_inner)),
-            count: u64::from(cell.count.into_inner()),
+    /// By level and place: whether photons landed there.
+    pub(super) fn landed(&self) -> Vec<Vec<bool>> {
+        let landed = |cell: &AtomicCell| cell.count.load(Ordering::Relaxed) > 0;
+        self.cells.iter().map(|cells| cells.par_iter().map(landed).collect()).collect()
+    }
+
+    /// What was added to the cells at `places`, by level; in their order.
+    pub(super) fn into_sums(mut self, places: &[Vec<u32>]) -> Sums {
+        let sum = |cell: &AtomicCell| CellSum {
+            flux: cell.flux.each_ref().map(|set| set.each_ref().map(|flux| flux.load(Ordering::Relaxed))),
+            count: u64::from(cell.count.load(Ordering::Relaxed)),
         };
-        let levels = self.cells.into_iter().map(|cells| cells.into_iter().map(sum).collect());
+        let level = |(cells, places): (&Vec<AtomicCell>, &Vec<u32>)| {
+            places.par_iter().map(|&place| sum(&cells[place as usize])).collect()
+        };
+        let cells = self.cells.iter().zip(places).map(level).collect();
         let count = self.bins.count();
         let by_bin = |sums: &GlossySums| -> Vec<[i64; 3]> {
             let sets = sums.chunks(sums.len() / SETS);
             let bin = |set: &[[[i64; LANES]; 3]], bin: usize| set[bin / LANES].map(|sums| sums[bin % LANES]);
             sets.flat_map(|set| (0..count).map(move |at| bin(set, at))).collect()
         };
-        let glossy = self.glossy.into_iter().map(|level| {
-            let cells = level.into_iter().enumerate();
-            let cells =
-                cells.map(|(place, cell)| (place, cell.into_inner().unwrap_or_else(PoisonError::into_inner)));
-            cells.filter(|(_, sums)| !sums.is_empty()).map(|(place, sums)| (place, by_bin(&sums))).collect()
+        let glossy = self.glossy.iter_mut().zip(places).map(|(level, places)| {
+            let mut filled: Vec<(usize, GlossySums)> = Vec::new();
+            let places = if level.is_empty() { [].as_slice() } else { places };
+            for (number, &place) in places.iter().enumerate() {
+                let sums = level[place as usize].get_mut().unwrap_or_else(PoisonError::into_inner);
+                if !sums.is_empty() {
+                    filled.push((number, std::mem::take(sums)));
+                }
+            }
+            filled.into_par_iter().map(|(place, sums)| (place, by_bin(&sums))).collect()
         });
         Sums {
-            cells: levels.collect(),
+            cells,
             glossy: glossy.collect(),
             bins: self.bins,
             quantum: self.quantum,

@@ -1,15 +1,16 @@
 //! From sums to a pyramid that can be read: levels merged octree-wise, sparse cells given their parent's value.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
 use super::accumulator::{Accumulator, CellSum, SETS, Sums};
 use super::bins::BinStore;
 use super::grid::{Grid, Vote};
-use super::index::{CellKey, LevelIndex};
+use super::index::{CellGroup, CellKey, LevelIndex};
 use super::layout::Layout;
+use super::lit::LitLayout;
 use super::mixed::mixed_cells;
 use super::surfaces::Surfaces;
 use super::{Cell, Level, Pyramid, Surroundings};
@@ -33,8 +34,9 @@ impl Pyramid {
         photons_per_cell: u32,
         scene: &impl Surroundings,
     ) -> Option<Self> {
-        let mut sums = accumulator.into_sums();
-        let surfaces = Surfaces::measure(layout, &sums.cells, scene)?;
+        let lit = LitLayout::new(layout, accumulator.landed());
+        let mut sums = accumulator.into_sums(&lit.places);
+        let (layout, surfaces) = (&lit.layout, Surfaces::measure(&lit, scene)?);
         merge(&surfaces, &mut sums.cells);
         let clock = Instant::now();
         merge_bins(layout, &surfaces, &mut sums);
@@ -43,58 +45,103 @@ impl Pyramid {
         let enough = Self::photons_to_divide(photons_per_cell).into();
         let grid = pruned_grid(layout, &sums, &mixed, enough);
         let mut store = BinStore::new(sums.bins);
-        let mut levels: Vec<Level> = Vec::with_capacity(layout.levels.len());
-        for (number, mixed) in mixed.iter().enumerate() {
+        let known = Known { surfaces: &surfaces, sums: &sums, mixed: &mixed, grid: &grid, enough };
+        let mut settled: Vec<Settled> = Vec::with_capacity(layout.levels.len());
+        for number in 0..layout.levels.len() {
             if !scene.keep_going() {
                 return None;
             }
-            let key = |place: usize| layout.levels[number].keys[place].cell(&layout.grid.levels[number]);
-            let parents = levels.last();
-            let parent = |place: usize| -> Option<[&Cell; SETS]> {
-                let (parents, (cell, class)) = (parents?, key(place));
-                let at = parents.index.find(layout.grid.parent(number, cell)?, class)?;
-                Some(std::array::from_fn(|set| &parents.cells[set][at]))
-            };
-            // A cell is not worth its memory where it would only repeat its parent: what is missing is read from there.
-            let is_kept = |place: usize| {
-                let is_read = || parent(place).is_some_and(|[parent, _]| parent.holds_enough());
-                sums.cells[number][place].count > 0 && (number == 0 || is_read())
-            };
-            // Slivers of something that is no mixture have their parent's light.
-            let read_above = |place: usize| {
-                parent(place).filter(|[parent, _]| !parent.is_mixed() && surfaces.is_sliver(number, place))
-            };
-            let clock = Instant::now();
-            let glossy = push_bins(&surfaces, number, &sums, &mut store, |place| {
-                is_kept(place) && read_above(place).is_none()
-            });
-            bins_time += clock.elapsed();
-            let settle = |place: usize| -> [Cell; SETS] {
-                let is_divided = grid.is_divided(number, layout.grid.levels[number].lattice(key(place).0));
-                let enough = sums.cells[number][place].count >= enough && is_divided;
-                let (parent, read_above) = (parent(place), read_above(place).is_some());
-                std::array::from_fn(|set| {
-                    let parent = parent.map(|parent| parent[set]);
-                    // Direction bins are those of the finest level that is everywhere.
-                    let glossy = if number > grid.base() || read_above {
-                        parent.and_then(Cell::glossy)
-                    } else {
-                        glossy.get(&place).copied()
-                    };
-                    let irradiance = match parent.filter(|_| read_above) {
-                        Some(parent) => parent.irradiance(),
-                        None => own_irradiance(&surfaces, number, place, &sums, set),
-                    };
-                    Cell::new(irradiance, glossy).with(enough, mixed[place])
-                })
-            };
-            let places = 0..layout.levels[number].keys.len();
-            let values: Vec<[Cell; SETS]> = places.into_par_iter().map(settle).collect();
-            let level = keep(layout, number, is_kept, &values);
-            levels.push(level);
+            settled.push(known.settle(number, settled.last(), &mut store, &mut bins_time));
         }
+        let levels = settled.into_iter().map(|settled| settled.level).collect();
         let per_finest_area = grid.levels[grid.finest()].cell_size.powi(-2);
         Some(Self { grid, classes: layout.classes, levels, store, bins_time, per_finest_area })
+    }
+}
+
+/// What is known of the cells when levels are settled.
+struct Known<'a> {
+    surfaces: &'a Surfaces<'a>,
+    sums: &'a Sums,
+    /// By level and place.
+    mixed: &'a [Vec<bool>],
+    /// Without the refinements that are not worth it.
+    grid: &'a Grid,
+    /// Photons that a cell has to hold for its children to be read.
+    enough: u64,
+}
+
+/// A level of the pyramid.
+struct Settled {
+    level: Level,
+    /// Where in it the cells of the layout are, by place there; [`NOT_KEPT`] where they are not.
+    places: Vec<u32>,
+}
+
+const NOT_KEPT: u32 = u32::MAX;
+
+impl Known<'_> {
+    /// Settles the cells of a level that are worth their memory. Those without a photon are not: what is missing is dark where
+    /// its parent holds enough photons to know, and else read from the parent.
+    #[expect(clippy::cast_possible_truncation, reason = "fewer than 2^32 cells fit in memory")]
+    fn settle(
+        &self,
+        number: usize,
+        above: Option<&Settled>,
+        store: &mut BinStore,
+        bins_time: &mut Duration,
+    ) -> Settled {
+        let Known { surfaces, sums, mixed, grid, enough } = *self;
+        let (layout, sums_of, mixed) = (surfaces.layout, &sums.cells[number], &mixed[number]);
+        let keys = &layout.levels[number].keys;
+        let parent = |place: usize| -> Option<[&Cell; SETS]> {
+            let (above, parent) = (above?, layout.parent(number, place)?);
+            let at = Some(above.places[parent]).filter(|&at| at != NOT_KEPT)?;
+            Some(std::array::from_fn(|set| &above.level.cells[set][at as usize]))
+        };
+        // A cell is not worth its memory where it would only repeat its parent: what is missing is read from there.
+        let is_kept = |&place: &usize| {
+            let is_read = || parent(place).is_some_and(|[parent, _]| parent.holds_enough());
+            sums_of[place].count > 0 && (number == 0 || is_read())
+        };
+        let kept: Vec<usize> = (0..keys.len()).into_par_iter().filter(is_kept).collect();
+        // Slivers of something that is no mixture have their parent's light.
+        let read_above = |place: usize| {
+            parent(place).filter(|[parent, _]| !parent.is_mixed() && surfaces.is_sliver(number, place))
+        };
+        let clock = Instant::now();
+        let is_read = |place: usize| is_kept(&place) && read_above(place).is_none();
+        let glossy = push_bins(surfaces, number, sums, store, is_read);
+        *bins_time += clock.elapsed();
+        let settle = |&place: &usize| -> [Cell; SETS] {
+            let level = &layout.grid.levels[number];
+            let is_divided = || grid.is_divided(number, level.lattice(keys[place].cell(level).0));
+            let enough = sums_of[place].count >= enough && is_divided();
+            let (parent, read_above) = (parent(place), read_above(place).is_some());
+            std::array::from_fn(|set| {
+                let parent = parent.map(|parent| parent[set]);
+                // Direction bins are those of the finest level that is everywhere.
+                let glossy = if number > grid.base() || read_above {
+                    parent.and_then(Cell::glossy)
+                } else {
+                    glossy.get(&place).copied()
+                };
+                let irradiance = match parent.filter(|_| read_above) {
+                    Some(parent) => parent.irradiance(),
+                    None => own_irradiance(surfaces, number, place, sums, set),
+                };
+                Cell::new(irradiance, glossy).with(enough, mixed[place])
+            })
+        };
+        let values: Vec<[Cell; SETS]> = kept.par_iter().map(settle).collect();
+        let cells = std::array::from_fn(|set| values.iter().map(|value| value[set]).collect());
+        let (mut groups, mut places) = (Vec::new(), vec![NOT_KEPT; keys.len()]);
+        for (number, &place) in kept.iter().enumerate() {
+            CellGroup::from(keys[place]).push(&mut groups);
+            places[place] = number as u32;
+        }
+        let index = LevelIndex::new(&layout.grid.levels[number], &groups);
+        Settled { level: Level { index, cells }, places }
     }
 }
 
@@ -171,19 +218,4 @@ fn merge_bins(layout: &Layout, surfaces: &Surfaces<'_>, sums: &mut Sums) {
             }
         }
     }
-}
-
-/// The cells worth their memory. Those without a photon are not: what is missing is dark where its parent holds enough
-/// photons to know, and else read from the parent.
-fn keep(
-    layout: &Layout,
-    number: usize,
-    is_kept: impl Fn(usize) -> bool + Sync,
-    values: &[[Cell; SETS]],
-) -> Level {
-    let places: Vec<usize> = (0..values.len()).into_par_iter().filter(|&place| is_kept(place)).collect();
-    let keys = places.iter().map(|&place| -> CellKey { layout.levels[number].keys[place] });
-    let index = LevelIndex::new(&layout.grid.levels[number], keys);
-    let cells = std::array::from_fn(|set| places.iter().map(|&place| values[place][set]).collect());
-    Level { index, cells }
 }

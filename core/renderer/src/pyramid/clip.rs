@@ -48,24 +48,24 @@ impl<W: Fn(usize, IVec3) -> bool, A: FnMut(usize, IVec3, Part<'_>)> Cutter<'_, W
         let offsets = corners.map(|p| self.grid.offset_f64(p));
         let polygon: Polygon = offsets.into_iter().collect();
         let (low, high) = extent(&polygon);
-        // The finest cell that holds the whole triangle saves the cuts above it.
-        for level in (0..=self.grid.base()).rev() {
-            let cell_size = cell_size(self.grid, level);
-            let (first, last) = ((low / cell_size).floor().as_ivec3(), (high / cell_size).floor().as_ivec3());
-            if first == last && self.grid.levels[level].within(first).is_some() {
-                return self.descend(level, first, &polygon);
+        // The finest cell that holds the whole triangle saves the cuts above it. Coarser lattices are halves of finer ones.
+        let base = self.grid.base();
+        let [first, last] = [low, high].map(|p| (p / cell_size(self.grid, base)).floor().as_i64vec3());
+        for up in 0..=base {
+            let (level, cell) = (base - up, (first >> up as i64).as_ivec3());
+            if first >> up as i64 == last >> up as i64 && self.grid.levels[level].within(cell).is_some() {
+                return self.descend(level, cell, &polygon);
             }
         }
         let cell_size = cell_size(self.grid, 0);
         let (first, last) = ((low / cell_size).floor().as_ivec3(), (high / cell_size).floor().as_ivec3());
         for z in first.z..=last.z {
-            let slab = cut_range(polygon.clone(), 2, f64::from(z) * cell_size, f64::from(z + 1) * cell_size);
+            let slab = cut_range(&polygon, 2, f64::from(z) * cell_size, f64::from(z + 1) * cell_size);
             for y in first.y..=last.y {
-                let column =
-                    cut_range(slab.clone(), 1, f64::from(y) * cell_size, f64::from(y + 1) * cell_size);
+                let column = cut_range(&slab, 1, f64::from(y) * cell_size, f64::from(y + 1) * cell_size);
                 for x in first.x..=last.x {
                     let (low, high) = (f64::from(x) * cell_size, f64::from(x + 1) * cell_size);
-                    self.descend(0, IVec3::new(x, y, z), &cut_range(column.clone(), 0, low, high));
+                    self.descend(0, IVec3::new(x, y, z), &cut_range(&column, 0, low, high));
                 }
             }
         }
@@ -93,12 +93,13 @@ impl<W: Fn(usize, IVec3) -> bool, A: FnMut(usize, IVec3, Part<'_>)> Cutter<'_, W
         }
         let mut upper = child;
         upper[axis] += 1;
-        match cut(polygon, axis, f64::from(upper[axis]) * cell_size(self.grid, level)) {
+        let mut parts = [Polygon::new(), Polygon::new()];
+        match cut(polygon, axis, f64::from(upper[axis]) * cell_size(self.grid, level), &mut parts) {
             Cut::Below => self.halve(level, child, axis + 1, polygon),
             Cut::Above => self.halve(level, upper, axis + 1, polygon),
-            Cut::Both([below, above]) => {
-                self.halve(level, child, axis + 1, &below);
-                self.halve(level, upper, axis + 1, &above);
+            Cut::Both => {
+                self.halve(level, child, axis + 1, &parts[0]);
+                self.halve(level, upper, axis + 1, &parts[1]);
             }
         }
     }
@@ -109,56 +110,58 @@ fn cell_size(grid: &Grid, level: usize) -> f64 {
 }
 
 /// Where a polygon lies of a plane.
-#[expect(clippy::large_enum_variant, reason = "never kept, only taken apart")]
 enum Cut {
     Below,
     Above,
-    /// The parts below and above.
-    Both([Polygon; 2]),
+    Both,
 }
 
-/// Cuts a polygon by a plane across `axis`. What lies in the plane belongs above, as `floor` has it.
-fn cut(polygon: &Polygon, axis: usize, plane: f64) -> Cut {
+/// Cuts a polygon by a plane across `axis`; where it lies on both sides, `parts`, which are empty, become what is below and
+/// above. What lies in the plane belongs above, as `floor` has it.
+fn cut(polygon: &Polygon, axis: usize, plane: f64, parts: &mut [Polygon; 2]) -> Cut {
+    let along = |p: &DVec3| p.to_array()[axis];
     let (low, high) = polygon
         .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(along(p)), high.max(along(p))));
     if low >= plane {
         return Cut::Above;
     }
     if high <= plane {
         return Cut::Below;
     }
-    let mut parts = [Polygon::new(), Polygon::new()];
-    for (i, &a) in polygon.iter().enumerate() {
-        let b = polygon[(i + 1) % polygon.len()];
-        let (da, db) = (a[axis] - plane, b[axis] - plane);
+    let [below, above] = parts;
+    let next = polygon.iter().skip(1).chain(polygon.first());
+    for (a, b) in polygon.iter().zip(next) {
+        let (da, db) = (along(a) - plane, along(b) - plane);
         if da <= 0.0 {
-            parts[0].push(a);
+            below.push(*a);
         }
         if da >= 0.0 {
-            parts[1].push(a);
+            above.push(*a);
         }
         if (da < 0.0 && db > 0.0) || (da > 0.0 && db < 0.0) {
             let mut p = a + (b - a) * (da / (da - db));
             p[axis] = plane;
-            parts[0].push(p);
-            parts[1].push(p);
+            below.push(p);
+            above.push(p);
         }
     }
-    Cut::Both(parts)
+    Cut::Both
 }
 
 /// The part between two planes.
-fn cut_range(polygon: Polygon, axis: usize, low: f64, high: f64) -> Polygon {
-    let above = match cut(&polygon, axis, low) {
+fn cut_range(polygon: &Polygon, axis: usize, low: f64, high: f64) -> Polygon {
+    let mut parts = [Polygon::new(), Polygon::new()];
+    let from_low = match cut(polygon, axis, low, &mut parts) {
         Cut::Below => return Polygon::new(),
-        Cut::Above => polygon,
-        Cut::Both([_, above]) => above,
+        Cut::Above => polygon.clone(),
+        Cut::Both => parts[1].take(),
     };
-    match cut(&above, axis, high) {
-        Cut::Below => above,
+    parts[0].clear();
+    match cut(&from_low, axis, high, &mut parts) {
+        Cut::Below => from_low,
         Cut::Above => Polygon::new(),
-        Cut::Both([below, _]) => below,
+        Cut::Both => parts[0].take(),
     }
 }
 

@@ -3,6 +3,7 @@
 //! Looked for along a rim: around a large part, or through the outermost points of many small ones. What merely stands on
 //! the surface, or ends within the cell, does not block the way along the rim twice.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use arrayvec::ArrayVec;
@@ -21,49 +22,108 @@ use crate::math::Side;
 /// How far from a part's center its corners are asked about (share of the way).
 const NEAR_CORNER: f64 = 0.95;
 
-/// Whether two groups of a part's corners lie open and do not see each other along the part's rim.
-pub(super) fn is_part_divided(
-    part: &Part<'_>,
+/// Rims of parts that wait to be asked about.
+#[derive(Debug, Default)]
+pub(super) struct PartRims {
+    rims: Vec<PartRim>,
+    /// Of all of them, one after the other.
+    corners: Vec<Vec3>,
+    /// From each corner to the next one of its part, both lifted.
+    ways: Vec<[Vec3; 2]>,
+}
+
+#[derive(Debug)]
+struct PartRim {
+    /// Level and place of the cell that the part lies in.
+    cell: (usize, usize),
     side: Side,
     cell_size: f32,
-    grid: &Grid,
-    scene: &impl Surroundings,
-) -> bool {
-    let corner = |&corner: &DVec3| (part.centroid + NEAR_CORNER * (corner - part.centroid)).as_vec3();
-    let corners: Vec<Vec3> = part.corners.iter().map(corner).map(|corner| grid.position(corner)).collect();
-    let blocked = blocked(&corners, LIFT * cell_size * side.normal, scene);
-    let Some(first) = blocked.iter().position(|&blocked| blocked) else { return false };
-    if !blocked[first + 1..].contains(&true) {
-        return false;
+    corners: Range<usize>,
+}
+
+impl PartRims {
+    /// Adds the rim of a part that lies in a cell.
+    pub(super) fn add(
+        &mut self,
+        cell: (usize, usize),
+        part: &Part<'_>,
+        side: Side,
+        cell_size: f32,
+        grid: &Grid,
+    ) {
+        let first = self.corners.len();
+        let corner = |corner: &DVec3| (part.centroid + NEAR_CORNER * (corner - part.centroid)).as_vec3();
+        self.corners.extend(part.corners.iter().map(|p| grid.position(corner(p))));
+        let corners = first..self.corners.len();
+        self.ways.extend(ways(&self.corners[corners.clone()], LIFT * cell_size * side.normal));
+        self.rims.push(PartRim { cell, side, cell_size, corners });
     }
-    let points: Vec<SidePoint> = corners.iter().map(|&p| SidePoint { p, side, cell_size }).collect();
-    let openness = scene.openness(&points);
-    let (mut groups, mut is_open) = (0, false);
-    for i in (0..corners.len()).map(|i| (first + 1 + i) % corners.len()) {
-        is_open |= openness[i].is_open;
-        if blocked[i] {
-            groups += u32::from(is_open);
-            is_open = false;
+
+    /// Gives level and place to `divide` where two groups of a part's corners lie open and do not see each other along the
+    /// part's rim.
+    pub(super) fn ask(&mut self, scene: &impl Surroundings, mut divide: impl FnMut((usize, usize))) {
+        let seen = scene.see(&self.ways);
+        for rim in self.rims.drain(..) {
+            let (corners, seen) = (&self.corners[rim.corners.clone()], &seen[rim.corners.clone()]);
+            if rim.is_divided(corners, seen, scene) {
+                divide(rim.cell);
+            }
         }
+        self.corners.clear();
+        self.ways.clear();
     }
-    groups > 1
+}
+
+impl PartRim {
+    /// `seen`: whether each corner sees the next one.
+    fn is_divided(&self, corners: &[Vec3], seen: &[bool], scene: &impl Surroundings) -> bool {
+        let Some(first) = seen.iter().position(|&seen| !seen) else { return false };
+        if !seen[first + 1..].contains(&false) {
+            return false;
+        }
+        let &Self { side, cell_size, .. } = self;
+        let points: Vec<SidePoint> = corners.iter().map(|&p| SidePoint { p, side, cell_size }).collect();
+        let openness = scene.openness(&points);
+        let (mut groups, mut is_open) = (0, false);
+        for i in (0..corners.len()).map(|i| (first + 1 + i) % corners.len()) {
+            is_open |= openness[i].is_open;
+            if !seen[i] {
+                groups += u32::from(is_open);
+                is_open = false;
+            }
+        }
+        groups > 1
+    }
 }
 
 /// Notes which cells of a level something divides, as their rims tell.
 pub(super) fn find_divided(layout: &Layout, level: usize, sums: &[OpenSum], scene: &impl Surroundings) {
+    const CELLS: usize = 256;
     let level_box = &layout.grid.levels[level];
-    layout.levels[level].keys.par_iter().zip(sums).for_each(|(key, sum)| {
-        let (rim, normal) = sum.rim();
-        if rim.has_points() && rim.is_divided(*key, level_box, normal, &layout.grid, scene) {
-            sum.divide();
+    let cells = layout.levels[level].keys.par_chunks(CELLS).zip(sums.par_chunks(CELLS));
+    cells.for_each(|(keys, sums)| {
+        let (mut asked, mut all_ways) = (Vec::new(), Vec::new());
+        for (key, sum) in keys.iter().zip(sums) {
+            let (rim, normal) = sum.rim();
+            if rim.has_points() {
+                let points = rim.points(*key, level_box, &layout.grid);
+                asked.push((sum, points.len()));
+                all_ways.extend(ways(&points, LIFT * level_box.cell_size * normal()));
+            }
+        }
+        let mut seen = scene.see(&all_ways).into_iter();
+        for (sum, points) in asked {
+            if seen.by_ref().take(points).filter(|&seen| !seen).count() > 1 {
+                sum.divide();
+            }
         }
     });
 }
 
-/// For each point, whether it does not see the next one, the last one the first, when both are lifted.
-fn blocked(points: &[Vec3], lift: Vec3, scene: &impl Surroundings) -> Vec<bool> {
+/// From each point to the next one, from the last one to the first, all lifted.
+fn ways(points: &[Vec3], lift: Vec3) -> impl Iterator<Item = [Vec3; 2]> {
     let next = points.iter().cycle().skip(1);
-    points.iter().zip(next).map(|(&p, &q)| !scene.sees(p + lift, q + lift)).collect()
+    points.iter().zip(next).map(move |(&p, &q)| [p + lift, q + lift])
 }
 
 /// The outermost open points of a cell's surface, one in each quarter around the cell's middle.
@@ -92,27 +152,15 @@ impl Rim {
         self.0.iter().filter(|bits| bits.load(Ordering::Relaxed) > 0).count() > 2
     }
 
-    /// Whether points of the rim do not see each other along it.
+    /// The points, one beside the other.
     #[expect(clippy::cast_precision_loss, reason = "16 bits each")]
-    pub(super) fn is_divided(
-        &self,
-        key: CellKey,
-        level: &LevelBox,
-        normal: Vec3,
-        grid: &Grid,
-        scene: &impl Surroundings,
-    ) -> bool {
+    fn points(&self, key: CellKey, level: &LevelBox, grid: &Grid) -> ArrayVec<Vec3, 4> {
         let low = level.lattice(key.cell(level).0).as_vec3();
         let point = |bits: u64| {
             let inside = [32, 16, 0].map(|shift| (bits >> shift & 0xffff) as f32 / STEPS);
             grid.position((low + Vec3::from(inside)) * level.cell_size)
         };
         let points = self.0.iter().map(|bits| bits.load(Ordering::Relaxed)).filter(|&bits| bits > 0);
-        let points: ArrayVec<Vec3, 4> = points.map(point).collect();
-        blocked(&points, LIFT * level.cell_size * normal, scene)
-            .into_iter()
-            .filter(|&blocked| blocked)
-            .count()
-            > 1
+        points.map(point).collect()
     }
 }

@@ -4,7 +4,7 @@
 use glam::IVec3;
 
 use super::class::BACKS;
-use super::grid::{BRICK, LevelBox};
+use super::grid::{BRICK, Grid, LevelBox};
 
 /// A brick is a run of these in memory. The first tells which classes the brick knows, one bit each: fronts, then backs; one
 /// for each of them follows, in order: which of its cells exist, and the place of the first.
@@ -21,8 +21,8 @@ pub struct LevelIndex {
     len: usize,
 }
 
-/// Stands for a brick where there is none.
-pub(super) const NO_BRICK: u32 = u32::MAX;
+/// Stands for a brick where there is none. Zero, so that memory of bricks that nobody asks for is never touched.
+pub(super) const NO_BRICK: u32 = 0;
 
 /// A cell's place for sorting: brick first, then class, then cell within the brick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -41,11 +41,117 @@ impl CellKey {
     #[expect(clippy::cast_possible_truncation, reason = "the inverse of `new`")]
     pub fn cell(self, level: &LevelBox) -> (IVec3, usize) {
         let (brick, class, bit) =
-            ((self.0 >> 16) as i32, (self.0 >> 8) as usize & 0xff, self.0 as i32 & 0x3f);
+            ((self.0 >> 16) as i32, (self.0 >> 8) as usize & 0xff, self.0 as u32 & 0x3f);
         let size = level.size / BRICK;
         let corner = IVec3::new(brick % size.x, brick / size.x % size.y, brick / (size.x * size.y)) * BRICK;
-        (corner + IVec3::new(bit & 3, (bit >> 2) & 3, bit >> 4), class)
+        (corner + inner(bit), class)
     }
+}
+
+/// Cells of one brick and normal class.
+#[derive(Clone, Copy, Debug)]
+pub struct CellGroup {
+    /// A [`CellKey`] without the cell within the brick.
+    key: u64,
+    /// One bit for each cell.
+    mask: u64,
+}
+
+/// Children of a cell within a brick, the lowest one at the lowest bit: two along each axis.
+const LOWEST_CHILDREN: u64 = 0x0000_0505_0000_0505;
+
+impl CellGroup {
+    /// One cell.
+    #[must_use]
+    pub fn new(level: &LevelBox, cell: IVec3, class: usize) -> Self {
+        CellKey::new(level, cell, class).into()
+    }
+
+    /// Adds to a list of groups, of which the last one often takes it.
+    pub fn push(self, groups: &mut Vec<Self>) {
+        match groups.last_mut() {
+            Some(last) if last.key == self.key => last.mask |= self.mask,
+            _ => groups.push(self),
+        }
+    }
+
+    /// Sorts groups and makes one of those of the same brick and class.
+    pub fn unite(groups: &mut Vec<Self>) {
+        groups.sort_unstable_by_key(|group| group.key);
+        groups.dedup_by(|next, kept| {
+            let is_same = next.key == kept.key;
+            kept.mask |= if is_same { next.mask } else { 0 };
+            is_same
+        });
+    }
+
+    /// The same cells with another class.
+    #[must_use]
+    pub fn of_class(self, class: impl Fn(usize) -> usize) -> Self {
+        let of = self.key as usize & 0xff;
+        Self { key: self.key & !0xff | class(of) as u64, ..self }
+    }
+
+    /// The cells one by one, in order.
+    pub fn keys(self) -> impl Iterator<Item = CellKey> {
+        self.bits().map(move |bit| CellKey(self.key << 8 | u64::from(bit)))
+    }
+
+    fn bits(self) -> impl Iterator<Item = u32> {
+        let rest = |mask: &u64| Some(mask & (mask - 1)).filter(|&rest| rest != 0);
+        std::iter::successors(Some(self.mask).filter(|&mask| mask != 0), rest).map(u64::trailing_zeros)
+    }
+
+    /// The cell of the next coarser level that holds the lowest corner of the brick, and the class.
+    fn corner_above(self, grid: &Grid, level: usize) -> Option<(IVec3, usize)> {
+        let (corner, class) = CellKey(self.key << 8).cell(&grid.levels[level]);
+        Some((grid.parent(level, corner)?, class))
+    }
+
+    /// The cells of the next coarser level around these: eight at most, all of one brick.
+    #[must_use]
+    pub fn above(self, grid: &Grid, level: usize) -> Option<Self> {
+        let (corner, class) = self.corner_above(grid, level)?;
+        let corner = CellKey::new(&grid.levels[level - 1], corner, class);
+        // Each cell's bit moves to the lowest of the eight that share a parent.
+        let along_x = self.mask | self.mask >> 1;
+        let along_y = along_x | along_x >> 4;
+        let lowest = (along_y | along_y >> 16) & LOWEST_CHILDREN;
+        let mask = Self { mask: lowest, ..self }.bits().fold(0, |mask, bit| mask | 1 << half(bit));
+        Some(Self { key: corner.0 >> 8, mask: mask << (corner.0 & 0x3f) })
+    }
+
+    /// Of each cell in order: the place of the one above it in the index of the next coarser level.
+    pub fn places_above(
+        self,
+        grid: &Grid,
+        level: usize,
+        coarser: &LevelIndex,
+    ) -> impl Iterator<Item = Option<usize>> {
+        let above = self.corner_above(grid, level);
+        self.bits().map(move |bit| {
+            let (corner, class) = above?;
+            coarser.find(corner + inner(half(bit)), class)
+        })
+    }
+}
+
+impl From<CellKey> for CellGroup {
+    fn from(key: CellKey) -> Self {
+        Self { key: key.0 >> 8, mask: 1 << (key.0 & 0x3f) }
+    }
+}
+
+/// A cell within a brick.
+#[expect(clippy::cast_possible_wrap, reason = "a bit of 64")]
+fn inner(bit: u32) -> IVec3 {
+    let bit = bit as i32;
+    IVec3::new(bit & 3, (bit >> 2) & 3, bit >> 4)
+}
+
+/// From a cell within a brick to that of the cell above it, within the brick's part of the brick above.
+const fn half(bit: u32) -> u32 {
+    bit >> 1 & 0b01_01_01
 }
 
 /// Brick number within the box and bit within the brick.
@@ -59,30 +165,25 @@ fn split(cell: IVec3, size: IVec3) -> (usize, u32) {
 }
 
 impl LevelIndex {
-    /// Index of the cells named by `keys`, which are sorted and unique. Cell `i` of the keys has place `i`.
+    /// Index of the cells of `groups`, which are sorted and unique. Cells have their places in the order of their keys.
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "fewer than 2^32 cells fit in memory")]
-    pub fn new(level: &LevelBox, keys: impl Iterator<Item = CellKey>) -> Self {
+    pub fn new(level: &LevelBox, groups: &[CellGroup]) -> Self {
         let size = level.size / BRICK;
         let mut bricks = vec![NO_BRICK; size.element_product() as usize];
-        let mut slots: Vec<Slot> = Vec::new();
+        // The first one stands where there is no brick.
+        let mut slots = vec![Slot::default()];
         let mut len = 0;
-        for key in keys {
-            let (brick, class, bit) =
-                ((key.0 >> 16) as usize, (key.0 >> 8) as usize & 0xff, key.0 as u32 & 0x3f);
+        for &CellGroup { key, mask } in groups {
+            let (brick, class) = ((key >> 8) as usize, key as usize & 0xff);
             if bricks[brick] == NO_BRICK {
                 bricks[brick] = slots.len() as u32;
                 slots.push(Slot::default());
             }
             let Slot(known) = &mut slots[bricks[brick] as usize];
-            if known[class / BACKS] >> (class % BACKS) & 1 == 0 {
-                known[class / BACKS] |= 1 << (class % BACKS);
-                slots.push(Slot([0, len as u64]));
-            }
-            if let Some(Slot([mask, _])) = slots.last_mut() {
-                *mask |= 1 << bit;
-            }
-            len += 1;
+            known[class / BACKS] |= 1 << (class % BACKS);
+            slots.push(Slot([mask, len as u64]));
+            len += mask.count_ones() as usize;
         }
         Self { bricks, slots, size, len }
     }
@@ -155,6 +256,48 @@ mod tests {
 
     const CLASSES: i32 = 2 * BACKS as i32;
 
+    fn groups(keys: &BTreeSet<CellKey>) -> Vec<CellGroup> {
+        let mut groups: Vec<CellGroup> = keys.iter().rev().map(|&key| key.into()).collect();
+        CellGroup::unite(&mut groups);
+        groups
+    }
+
+    /// The cells above groups of cells are those above each of the cells.
+    #[test]
+    fn groups_have_the_cells_above_their_cells() {
+        let half = DVec3::new(0.5, 0.3, 0.1);
+        let grid = Grid::new([-half, half], [-half, half], 37, DVec3::ZERO);
+        let (finest, mut state) = (grid.finest(), 7_u64);
+        let level = grid.levels[finest];
+        let mut draw = |n: i32| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            ((state >> 33) % n as u64) as i32
+        };
+        let keys: BTreeSet<CellKey> = (0..3000)
+            .map(|_| {
+                let cell = IVec3::new(draw(level.size.x), draw(level.size.y), draw(level.size.z));
+                CellKey::new(&level, cell, draw(3) as usize)
+            })
+            .collect();
+        let groups = groups(&keys);
+        assert!(groups.iter().flat_map(|group| group.keys()).eq(keys.iter().copied()));
+        let above = |key: &CellKey| {
+            let (cell, class) = key.cell(&level);
+            CellKey::new(&grid.levels[finest - 1], grid.parent(finest, cell).expect("nested"), class)
+        };
+        let known: BTreeSet<CellKey> = keys.iter().map(above).collect();
+        let mut coarser: Vec<CellGroup> =
+            groups.iter().filter_map(|group| group.above(&grid, finest)).collect();
+        CellGroup::unite(&mut coarser);
+        assert!(coarser.iter().flat_map(|group| group.keys()).eq(known.iter().copied()));
+        let index = LevelIndex::new(&grid.levels[finest - 1], &coarser);
+        let order: Vec<CellKey> = known.into_iter().collect();
+        let places = groups.iter().flat_map(|group| group.places_above(&grid, finest, &index));
+        for (key, place) in keys.iter().zip(places) {
+            assert_eq!(order[place.expect("there is one")], above(key));
+        }
+    }
+
     #[test]
     fn every_cell_is_found_where_its_key_says() {
         let half = DVec3::new(0.5, 0.3, 0.1);
@@ -168,7 +311,7 @@ mod tests {
             let cell = IVec3::new(r(10, level.size.x), r(25, level.size.y), r(40, level.size.z));
             keys.insert(CellKey::new(&level, cell, r(50, CLASSES) as usize));
         }
-        let index = LevelIndex::new(&level, keys.iter().copied());
+        let index = LevelIndex::new(&level, &groups(&keys));
         assert_eq!(index.len(), keys.len());
         for (place, key) in keys.iter().enumerate() {
             let (cell, class) = key.cell(&level);

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::Surroundings;
 use super::class::NormalClasses;
 use super::grid::Grid;
-use super::index::{CellKey, LevelIndex};
+use super::index::{CellGroup, CellKey, LevelIndex};
 use super::measure::Batches;
 use super::surfaces::BYTES_PER_CELL;
 
@@ -28,6 +28,31 @@ pub struct LevelLayout {
 /// Stands for the place of a parent where there is none.
 const NO_PARENT: u32 = u32::MAX;
 
+impl LevelLayout {
+    /// Of all levels, from the cells of each.
+    #[expect(clippy::cast_possible_truncation, reason = "fewer than 2^32 cells fit in memory")]
+    fn all(grid: &Grid, groups: &[Vec<CellGroup>]) -> Vec<Self> {
+        let indices: Vec<LevelIndex> = grid
+            .levels
+            .par_iter()
+            .zip(groups)
+            .map(|(level, groups)| LevelIndex::new(level, groups))
+            .collect();
+        let parents = |level: usize| -> Vec<u32> {
+            let Some(above) = level.checked_sub(1) else { return vec![NO_PARENT; indices[0].len()] };
+            let places = |group: &CellGroup| group.places_above(grid, level, &indices[above]);
+            let places = groups[level].par_iter().flat_map_iter(places);
+            places.map(|place| place.map_or(NO_PARENT, |place| place as u32)).collect()
+        };
+        let parents: Vec<Vec<u32>> = (0..groups.len()).map(parents).collect();
+        let of_level = |((index, parents), groups): ((LevelIndex, Vec<u32>), &Vec<CellGroup>)| {
+            let keys = groups.par_iter().flat_map_iter(|group| group.keys()).collect();
+            Self { index, keys, parents, glossy_normals: Vec::new() }
+        };
+        indices.into_iter().zip(parents).zip(groups).map(of_level).collect()
+    }
+}
+
 /// The cells of all levels.
 #[derive(Debug)]
 pub struct Layout {
@@ -43,32 +68,15 @@ pub struct Layout {
 impl Layout {
     /// The cells of `grid` that surfaces lie in, and the coarser ones around them. `None` when cancelled.
     #[must_use]
-    #[expect(clippy::cast_possible_truncation, reason = "fewer than 2^32 cells fit in memory")]
     pub fn new(grid: Grid, classes: NormalClasses, scene: &impl Surroundings) -> Option<Self> {
         let batches = Batches::new(&grid, scene);
-        let mut keys = batches.cells(&grid, classes, scene)?;
+        let mut groups = batches.cells(&grid, classes, scene)?;
         for level in (1..grid.levels.len()).rev() {
-            let (coarser, finer) = keys.split_at_mut(level);
-            let (coarser, finer) = (&mut coarser[level - 1], &finer[0]);
-            let parent = |key: &CellKey| parent_key(&grid, level, *key);
-            coarser.par_extend(finer.par_iter().filter_map(parent));
-            coarser.par_sort_unstable();
-            coarser.dedup();
+            let (coarser, finer) = groups.split_at_mut(level);
+            coarser[level - 1].extend(finer[0].iter().filter_map(|group| group.above(&grid, level)));
+            CellGroup::unite(&mut coarser[level - 1]);
         }
-        let mut levels: Vec<LevelLayout> = Vec::with_capacity(keys.len());
-        for (level, keys) in keys.into_iter().enumerate() {
-            let index = LevelIndex::new(&grid.levels[level], keys.iter().copied());
-            let parent = |key: &CellKey| {
-                let (cell, class) = parent_key(&grid, level, *key)?.cell(&grid.levels[level - 1]);
-                Some(levels[level - 1].index.find(cell, class)? as u32)
-            };
-            let parents = if level == 0 {
-                vec![NO_PARENT; keys.len()]
-            } else {
-                keys.par_iter().map(|key| parent(key).unwrap_or(NO_PARENT)).collect()
-            };
-            levels.push(LevelLayout { index, keys, parents, glossy_normals: Vec::new() });
-        }
+        let levels = LevelLayout::all(&grid, &groups);
         let mut layout = Self { grid, classes, levels, batches };
         if (0..scene.triangle_count()).any(|i| scene.triangle(i).glossy) {
             layout.add_glossy_normals(scene);
@@ -102,6 +110,28 @@ impl Layout {
             let mean = |sum: [i64; 3]| DVec3::from(sum.map(|c| c as f64)).normalize_or_zero().as_vec3();
             level.glossy_normals = sums.into_par_iter().map(mean).collect();
         }
+    }
+
+    /// Some of the cells, which are at `places` by level, in order, and have the coarser ones around them among them.
+    #[must_use]
+    pub(super) fn part(&self, places: &[Vec<u32>]) -> Self {
+        let keys = self.levels.par_iter().map(|level| &level.keys);
+        let of_level = |(keys, places): (&Vec<CellKey>, &Vec<u32>)| {
+            let mut groups = Vec::new();
+            for &place in places {
+                CellGroup::from(keys[place as usize]).push(&mut groups);
+            }
+            groups
+        };
+        let groups: Vec<Vec<CellGroup>> = keys.zip(places).map(of_level).collect();
+        let mut levels = LevelLayout::all(&self.grid, &groups);
+        for ((part, whole), places) in levels.iter_mut().zip(&self.levels).zip(places) {
+            if !whole.glossy_normals.is_empty() {
+                let normals = places.par_iter().map(|&place| whole.glossy_normals[place as usize]);
+                part.glossy_normals = normals.collect();
+            }
+        }
+        Self { grid: self.grid.clone(), classes: self.classes, levels, batches: self.batches.clone() }
     }
 
     /// Scene area of one unit in which the area of cells is counted, a power of two.
@@ -203,10 +233,4 @@ impl Layout {
         };
         self.levels.iter().map(level).sum()
     }
-}
-
-/// Key of the coarser cell around a cell, of the same class.
-fn parent_key(grid: &Grid, level: usize, key: CellKey) -> Option<CellKey> {
-    let (cell, class) = key.cell(&grid.levels[level]);
-    Some(CellKey::new(&grid.levels[level - 1], grid.parent(level, cell)?, class))
 }

@@ -6,11 +6,13 @@ use std::ops::Range;
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
+use super::class::BACKS;
 use super::clip::{Part, clip_triangle, to_the_finest};
-use super::divided::is_part_divided;
+use super::divided::PartRims;
 use super::grid::Grid;
-use super::index::CellKey;
+use super::index::CellGroup;
 use super::layout::Layout;
+use super::lit::LitLayout;
 use super::surfaces::{CellSurface, OpenSum};
 use super::{NormalClasses, SidePoint, Surroundings};
 use crate::math::Side;
@@ -32,7 +34,7 @@ const PARTS: f64 = 2048.0;
 const AREA_BITS: i32 = 48;
 
 /// The triangles in batches that make enough parts to be asked about together, and how finely area is counted.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Batches {
     ranges: Vec<Range<usize>>,
     /// Scene area of one unit of [`CellSurface::area`], a power of two.
@@ -70,33 +72,34 @@ impl Batches {
         grid: &Grid,
         classes: NormalClasses,
         scene: &impl Surroundings,
-    ) -> Option<Vec<Vec<CellKey>>> {
+    ) -> Option<Vec<Vec<CellGroup>>> {
+        // Of fronts only: where one is, there is its back.
         let batch = |range: &Range<usize>| {
-            let mut keys: Vec<(usize, CellKey)> = Vec::new();
+            let mut fronts = vec![Vec::new(); grid.levels.len()];
             for triangle in range.clone().map(|i| scene.triangle(i)) {
-                let sides = Side::both(triangle.normal).map(|side| classes.of(side));
+                let class = classes.of(Side { normal: triangle.normal, back: false });
                 clip_triangle(grid, triangle.corners, to_the_finest, |level, cell, part| {
                     if self.units(part.area) > 0 {
-                        keys.extend(
-                            sides.map(|class| (level, CellKey::new(&grid.levels[level], cell, class))),
-                        );
+                        CellGroup::new(&grid.levels[level], cell, class).push(&mut fronts[level]);
                     }
                 });
             }
-            keys.sort_unstable();
-            keys.dedup();
-            scene.keep_going().then_some(keys)
+            fronts.iter_mut().for_each(CellGroup::unite);
+            scene.keep_going().then_some(fronts)
         };
         let batches: Option<Vec<_>> = self.ranges.par_iter().map(batch).collect();
-        let mut levels = vec![Vec::new(); grid.levels.len()];
-        for (level, key) in batches?.into_iter().flatten() {
-            levels[level].push(key);
-        }
-        for keys in &mut levels {
-            keys.par_sort_unstable();
-            keys.dedup();
-        }
-        Some(levels)
+        let batches = batches?;
+        let level = |level: usize| {
+            let mut groups: Vec<CellGroup> =
+                batches.iter().flat_map(|fronts| &fronts[level]).copied().collect();
+            CellGroup::unite(&mut groups);
+            let backs = groups.iter().map(|group| group.of_class(|front| BACKS + classes.facing(front)));
+            let backs: Vec<CellGroup> = backs.collect();
+            groups.extend(backs);
+            CellGroup::unite(&mut groups);
+            groups
+        };
+        Some((0..grid.levels.len()).into_par_iter().map(level).collect())
     }
 
     /// The mean normals of the glossy surfaces in cells up to the finest level that is everywhere, as sums by level and
@@ -129,17 +132,13 @@ fn quantized_area(corners: [DVec3; 3]) -> f64 {
     (area * 2.0_f64.powi(AREA_BITS)).round() * 2.0_f64.powi(-AREA_BITS)
 }
 
-/// Adds the surface of cells that light came to, or to a cell around them, to `sums`, and what is known of its openness.
-/// Surface where no light came is added to the largest cell that none came to, and asked about as coarsely. `lit` tells of
-/// every cell whether light came to it. `None` when cancelled.
-pub(super) fn measure(
-    layout: &Layout,
-    lit: &[Vec<bool>],
-    scene: &impl Surroundings,
-    sums: &[Vec<OpenSum>],
-) -> Option<()> {
-    layout.batches.ranges.par_iter().try_for_each(|range| {
-        let mut pending = Pending { layout, lit, scene, sums, points: Vec::new(), asked: Vec::new() };
+/// Adds the surface of cells that matter to `sums`, and what is known of its openness. Surface where no light came is added
+/// to the largest cell that none came to, and asked about as coarsely. `None` when cancelled.
+pub(super) fn measure(lit: &LitLayout<'_>, scene: &impl Surroundings, sums: &[Vec<OpenSum>]) -> Option<()> {
+    lit.layout.batches.ranges.par_iter().try_for_each(|range| {
+        let layout = &lit.layout;
+        let (points, asked, rims) = (Vec::new(), Vec::new(), PartRims::default());
+        let mut pending = Pending { layout, lit, scene, sums, points, asked, rims };
         for i in range.clone() {
             pending.add_triangle(i);
         }
@@ -161,12 +160,13 @@ struct Asked {
 /// What a batch of triangles adds.
 struct Pending<'a, S> {
     layout: &'a Layout,
-    lit: &'a [Vec<bool>],
+    lit: &'a LitLayout<'a>,
     scene: &'a S,
     sums: &'a [Vec<OpenSum>],
     points: Vec<SidePoint>,
     /// By point.
     asked: Vec<Asked>,
+    rims: PartRims,
 }
 
 impl<S: Surroundings> Pending<'_, S> {
@@ -176,29 +176,23 @@ impl<S: Surroundings> Pending<'_, S> {
         let (layout, lit) = (self.layout, self.lit);
         let is_dark = |level: usize, cell: IVec3| {
             let place = |class| layout.levels[level].index.find(cell, class);
-            sides.iter().all(|&(_, class)| place(class).is_none_or(|place| !lit[level][place]))
+            sides.iter().all(|&(_, class)| place(class).is_none_or(|place| !lit.is_lit[level][place]))
         };
         clip_triangle(&layout.grid, triangle.corners, is_dark, |level, cell, part| {
             let mut is_alone = None;
             for (side, class) in sides {
-                let place = layout.levels[level].index.find(cell, class);
-                let Some((of, place)) = place.and_then(|place| self.counted_in(level, place)) else {
-                    continue;
-                };
+                let Some((of, place)) = self.counted_in(level, cell, class) else { continue };
                 let surface = self.surface(&part, side, triangle.glossy);
                 self.sums[of][place].add(&surface);
                 let box_of = &layout.grid.levels[level];
                 let in_company = of == level
                     && (layout.grid.is_divided(level, box_of.lattice(cell))
-                        || !*is_alone.get_or_insert_with(|| layout.levels[level].index.is_alone(cell)));
+                        || !*is_alone.get_or_insert_with(|| lit.whole.levels[level].index.is_alone(cell)));
                 let several = of < level || in_company;
                 self.add_points((of, place), &part, surface.area, side, several, in_company);
                 let is_large = part.area >= SMALL_PART * f64::from(box_of.cell_size).powi(2);
-                if in_company
-                    && is_large
-                    && is_part_divided(&part, side, box_of.cell_size, &layout.grid, self.scene)
-                {
-                    self.sums[of][place].divide();
+                if in_company && is_large {
+                    self.rims.add((of, place), &part, side, box_of.cell_size, &layout.grid);
                 }
             }
             if self.points.len() >= TOGETHER {
@@ -208,15 +202,15 @@ impl<S: Surroundings> Pending<'_, S> {
     }
 
     /// The cell that surface of a cell is added to: itself, or the largest around it that no light came to.
-    fn counted_in(&self, mut level: usize, mut place: usize) -> Option<(usize, usize)> {
-        while !self.lit[level][place] {
-            let parent = self.layout.parent(level, place)?;
-            if self.lit[level - 1][parent] {
-                break;
+    fn counted_in(&self, mut level: usize, mut cell: IVec3, class: usize) -> Option<(usize, usize)> {
+        loop {
+            if let Some(place) = self.layout.levels[level].index.find(cell, class) {
+                return Some((level, place));
             }
-            (level, place) = (level - 1, parent);
+            // What does not matter lies in something larger that does, without light like itself.
+            let coarser = level.checked_sub(1)?;
+            (level, cell) = (coarser, self.layout.grid.parent(level, cell)?);
         }
-        Some((level, place))
     }
 
     fn surface(&self, part: &Part<'_>, side: Side, glossy: bool) -> CellSurface {
@@ -271,8 +265,9 @@ impl<S: Surroundings> Pending<'_, S> {
         }
     }
 
-    /// Asks about the points that wait.
+    /// Asks about the points that wait, and the rims.
     fn ask(&mut self) {
+        self.rims.ask(self.scene, |(level, place)| self.sums[level][place].divide());
         let openness = self.scene.openness(&self.points);
         let grid = &self.layout.grid;
         // Two surfaces that face each other: the far side of one, where it shares a cell with the near side of the other, and

@@ -17,6 +17,9 @@ use super::surfaces::Surfaces;
 /// Visibility rays start this far above the surface (cells): above its own curvature, below what stands on it.
 pub(super) const LIFT: f32 = 0.25;
 
+/// Cells whose rays are traced together.
+const TOGETHER: usize = 512;
+
 /// By level, by place: whether the cell is mixed. Only cells that hold light are asked about.
 pub(super) fn mixed_cells(
     layout: &Layout,
@@ -48,16 +51,22 @@ pub(super) fn mixed_cells(
             |place: usize| layout.grid.position(points[place] + surfaces[place].mean_normal() * lift);
         let flags: Vec<AtomicBool> =
             mixed[level - 1].iter().map(|&divided| AtomicBool::new(divided)).collect();
-        cells.into_par_iter().for_each(|place| {
-            let Some(parent) = layout.parent(level, place) else { return };
-            if sums[level - 1][parent].count == 0
-                || surfaces[place].area == 0
-                || flags[parent].load(Ordering::Relaxed)
-            {
-                return;
+        (0..cells.len().div_ceil(TOGETHER)).into_par_iter().for_each(|some| {
+            let (mut parents, mut pairs) = (Vec::new(), Vec::new());
+            for place in cells.clone().skip(some * TOGETHER).take(TOGETHER) {
+                let Some(parent) = layout.parent(level, place) else { continue };
+                let Some(largest) = largest[parent].filter(|_| surfaces[place].area > 0) else { continue };
+                if sums[level - 1][parent].count == 0 || flags[parent].load(Ordering::Relaxed) {
+                    continue;
+                }
+                if mixed[level][place] {
+                    flags[parent].store(true, Ordering::Relaxed);
+                } else if place != largest {
+                    parents.push(parent);
+                    pairs.push([lifted(place), lifted(largest)]);
+                }
             }
-            let Some(largest) = largest[parent] else { return };
-            if mixed[level][place] || (place != largest && !scene.sees(lifted(place), lifted(largest))) {
+            for (parent, _) in parents.into_iter().zip(scene.see(&pairs)).filter(|(_, seen)| !seen) {
                 flags[parent].store(true, Ordering::Relaxed);
             }
         });

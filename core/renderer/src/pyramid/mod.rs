@@ -7,6 +7,7 @@
 //! ```text
 //!   Layout       triangles -> which cells exist                 (measure, clip, index)
 //!   Accumulator  photons   -> flux and count of each cell       (exact integer sums)
+//!   LitLayout    landings  -> which of the cells still matter   (lit)
 //!   Surfaces     triangles -> how much surface of a cell counts (measure, clip)
 //!   Pyramid      merge     -> irradiance of each cell, read by  lookup(point, class, footprint)
 //! ```
@@ -26,6 +27,7 @@ mod divided;
 mod grid;
 mod index;
 mod layout;
+mod lit;
 mod lookup;
 mod measure;
 mod mixed;
@@ -93,8 +95,8 @@ pub trait Surroundings: Sync {
     /// Whether a ray along the surface, to one of four sides, gets away from a point.
     fn leads_out(&self, point: &SidePoint) -> bool;
 
-    /// Whether two points see each other.
-    fn sees(&self, p: Vec3, q: Vec3) -> bool;
+    /// Tells of pairs of points, in order, whether they see each other.
+    fn see(&self, pairs: &[[Vec3; 2]]) -> Vec<bool>;
 
     /// False once the work is cancelled.
     fn keep_going(&self) -> bool;

@@ -7,11 +7,11 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::Surroundings;
-use super::accumulator::CellSum;
 use super::class::BACKS;
 use super::divided::{Rim, find_divided};
 use super::index::CellKey;
 use super::layout::Layout;
+use super::lit::LitLayout;
 use super::measure::measure;
 
 /// Part of a cell's face: a cell with less surface is a sliver.
@@ -140,8 +140,8 @@ impl OpenSum {
     }
 
     /// Its open points, and its mean normal.
-    pub(super) fn rim(&self) -> (&Rim, Vec3) {
-        (&self.rim, self.whole.get().mean_normal())
+    pub(super) fn rim(&self) -> (&Rim, impl FnOnce() -> Vec3) {
+        (&self.rim, || self.whole.get().mean_normal())
     }
 
     /// Takes note of an open point, see [`Rim::add`].
@@ -214,15 +214,11 @@ const LEAST_OPEN: i64 = 8;
 impl<'a> Surfaces<'a> {
     /// Asks of the surface of lit cells whether light can come to it: hidden surface, such as the floor under a box, is left
     /// out beside open one. `None` when cancelled.
-    pub(super) fn measure(
-        layout: &'a Layout,
-        landed: &[Vec<CellSum>],
-        scene: &impl Surroundings,
-    ) -> Option<Self> {
-        let lit = lit_cells(layout, landed);
-        let mut sums: Vec<Vec<OpenSum>> =
-            lit.iter().map(|lit| lit.iter().map(|_| OpenSum::default()).collect()).collect();
-        measure(layout, &lit, scene, &sums)?;
+    pub(super) fn measure(lit: &'a LitLayout<'_>, scene: &impl Surroundings) -> Option<Self> {
+        let layout = &lit.layout;
+        let none = |level: &Vec<bool>| level.par_iter().map(|_| OpenSum::default()).collect();
+        let mut sums: Vec<Vec<OpenSum>> = lit.is_lit.iter().map(none).collect();
+        measure(lit, scene, &sums)?;
         for (level, sums) in sums.iter().enumerate() {
             find_divided(layout, level, sums, scene);
         }
@@ -243,7 +239,8 @@ impl<'a> Surfaces<'a> {
             };
             let (surfaces, states): (Vec<CellSurface>, Vec<State>) =
                 cells.par_iter().enumerate().map(all).unzip();
-            finer = sums.last().into_iter().flatten().map(|_| Default::default()).collect();
+            let coarser = sums.last().map_or(0, Vec::len);
+            finer = (0..coarser).into_par_iter().map(|_| Default::default()).collect();
             let places = (0..cells.len()).into_par_iter().filter(|&place| surfaces[place].area > 0);
             places.for_each(|place| {
                 if let Some(parent) = layout.parent(level, place) {
@@ -274,21 +271,6 @@ impl<'a> Surfaces<'a> {
         let hidden = self.levels[level].hidden[place];
         self.layout.parent(level, place).filter(|&parent| !hidden || self.levels[level - 1].hidden[parent])
     }
-}
-
-/// By level and place: whether light landed in the cell or a finer one of it.
-fn lit_cells(layout: &Layout, landed: &[Vec<CellSum>]) -> Vec<Vec<bool>> {
-    let mut lit: Vec<Vec<bool>> =
-        landed.iter().map(|cells| cells.iter().map(|cell| cell.count > 0).collect()).collect();
-    for level in (1..lit.len()).rev() {
-        let (coarser, finer) = lit.split_at_mut(level);
-        for (place, _) in finer[0].iter().enumerate().filter(|(_, lit)| **lit) {
-            if let Some(parent) = layout.parent(level, place) {
-                coarser[level - 1][parent] = true;
-            }
-        }
-    }
-    lit
 }
 
 /// Hides the surface where two flat fronts of a cell lie on each other, such as a box's bottom and the floor.
@@ -371,8 +353,8 @@ mod tests {
             true
         }
 
-        fn sees(&self, _: Vec3, _: Vec3) -> bool {
-            true
+        fn see(&self, pairs: &[[Vec3; 2]]) -> Vec<bool> {
+            vec![true; pairs.len()]
         }
 
         fn keep_going(&self) -> bool {
@@ -384,14 +366,13 @@ mod tests {
         SurfaceTriangle { corners: [a, b, c], normal: (b - a).cross(c - a).normalize().as_vec3(), glossy }
     }
 
-    /// As if one photon had landed in every cell that `is_lit`.
-    fn landed(layout: &Layout, is_lit: impl Fn(usize, usize) -> bool) -> Vec<Vec<CellSum>> {
-        let sum = |is_lit: bool| CellSum { count: u64::from(is_lit), ..CellSum::default() };
+    /// As if photons had landed in every cell that `is_lit`.
+    fn lit(layout: &Layout, is_lit: impl Fn(usize, usize) -> bool) -> LitLayout<'_> {
         let level = |number: usize| {
             let places = 0..layout.levels[number].keys.len();
-            places.map(|place| sum(is_lit(number, place))).collect()
+            places.map(|place| is_lit(number, place)).collect()
         };
-        (0..layout.levels.len()).map(level).collect()
+        LitLayout::new(layout, (0..layout.levels.len()).map(level).collect())
     }
 
     /// Area per level is the area of the surfaces, both sides, at every level.
@@ -408,7 +389,8 @@ mod tests {
         let triangles = (0..).zip(corners).map(|(i, corners)| triangle(corners, i == 1)).collect();
         let scene = Scene { triangles, is_open: |_: &SidePoint| true };
         let layout = Layout::new(grid, NormalClasses::Six, &scene).unwrap();
-        let surfaces = Surfaces::measure(&layout, &landed(&layout, |_, _| true), &scene).unwrap();
+        let lit = lit(&layout, |_, _| true);
+        let surfaces = Surfaces::measure(&lit, &scene).unwrap();
         let exact: f64 = corners.iter().map(|[a, b, c]| (b - a).cross(c - a).length()).sum();
         let sum: f64 = (0..layout.levels[0].keys.len()).map(|place| surfaces.area(0, place)).sum();
         assert!((sum - exact).abs() < 1e-9 * exact, "{sum} against {exact}");
@@ -446,24 +428,31 @@ mod tests {
                 (0..layout.levels[finest].keys.len()).find(|&place| root(finest, place) == of).unwrap()
             })
             .collect();
-        let lit = landed(&layout, |level, place| level == finest && one_each.contains(&place));
-        let surfaces = Surfaces::measure(&layout, &lit, &scene).unwrap();
-        let area = |level: usize, is_front: bool| -> f64 {
-            let places = 0..layout.levels[level].keys.len();
-            let places = places.filter(|&place| (class(level, place) == front) == is_front);
-            places.map(|place| surfaces.area(level, place)).sum()
+        let some = lit(&layout, |level, place| level == finest && one_each.contains(&place));
+        let surfaces = Surfaces::measure(&some, &scene).unwrap();
+        let area_of = |key: CellKey, level: usize| -> f64 {
+            let (cell, class) = key.cell(&layout.grid.levels[level]);
+            let place = some.layout.levels[level].index.find(cell, class);
+            place.map_or(0.0, |place| surfaces.area(level, place))
         };
-        assert!((area(0, true) / 0.04 - 1.0).abs() < 1e-9);
-        assert_eq!(area(0, false), 0.0);
+        let area = |is_front: bool| -> f64 {
+            let places = 0..layout.levels[0].keys.len();
+            let places = places.filter(|&place| (class(0, place) == front) == is_front);
+            places.map(|place| area_of(layout.levels[0].keys[place], 0)).sum()
+        };
+        assert!((area(true) / 0.04 - 1.0).abs() < 1e-9);
+        assert_eq!(area(false), 0.0);
         // Finer cells are measured next to one that light came to.
-        let whole = Surfaces::measure(&layout, &landed(&layout, |_, _| true), &scene).unwrap();
-        let lit = lit_cells(&layout, &lit);
+        let all = lit(&layout, |_, _| true);
+        let whole = Surfaces::measure(&all, &scene).unwrap();
         for level in 1..=finest {
             let places = 0..layout.levels[level].keys.len();
             for place in places.filter(|&place| class(level, place) == front) {
-                let is_measured = lit[level - 1][layout.parent(level, place).unwrap()];
+                let (parent, key) = (layout.parent(level, place).unwrap(), layout.levels[level].keys[place]);
+                let above = some.places[level - 1].binary_search(&u32::try_from(parent).unwrap());
+                let is_measured = above.is_ok_and(|above| some.is_lit[level - 1][above]);
                 let exact = if is_measured { whole.area(level, place) } else { 0.0 };
-                assert!((surfaces.area(level, place) - exact).abs() < 1e-9 * 0.04, "level {level}");
+                assert!((area_of(key, level) - exact).abs() < 1e-9 * 0.04, "level {level}");
             }
         }
     }
@@ -482,7 +471,8 @@ mod tests {
             let triangles = floor.iter().chain(&bottom).map(|&corners| triangle(corners, false));
             let scene = Scene { triangles: triangles.collect(), is_open };
             let layout = Layout::new(grid.clone(), NormalClasses::Six, &scene).unwrap();
-            let surfaces = Surfaces::measure(&layout, &landed(&layout, |_, _| true), &scene).unwrap();
+            let lit = lit(&layout, |_, _| true);
+            let surfaces = Surfaces::measure(&lit, &scene).unwrap();
             let (level, place) = layout.find(p(2.0, 2.0).as_vec3(), layout.classes.of(side)).unwrap();
             surfaces.area(level, place) / 0.05_f64.powi(2)
         };

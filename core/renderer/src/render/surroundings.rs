@@ -122,8 +122,20 @@ impl Surroundings for SceneSurroundings<'_> {
             .any(|lane| packet.hit(lane).is_none_or(|hit| self.end(point, &packet.ray(lane), &hit).is_none()))
     }
 
-    fn sees(&self, p: Vec3, q: Vec3) -> bool {
-        self.lit.accel.sees(p, q)
+    fn see(&self, pairs: &[[Vec3; 2]]) -> Vec<bool> {
+        let mut packet = Packet::default();
+        let mut seen = Vec::with_capacity(pairs.len());
+        for sixteen in pairs.chunks(LANES) {
+            packet.clear();
+            for (lane, &[p, q]) in sixteen.iter().enumerate() {
+                // No unit vector: the other point is at the end of it.
+                let ray = Ray { origin: p, direction: q - p, mask: visibility::DIFFUSE, time: MIDDLE };
+                packet.set(lane, &ray, 1.0);
+            }
+            self.lit.accel.occluded_packet(&mut packet);
+            seen.extend((0..sixteen.len()).map(|lane| packet.is_free(lane)));
+        }
+        seen
     }
 
     fn keep_going(&self) -> bool {
