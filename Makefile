@@ -24,7 +24,7 @@ test: ## every test, on every Blender this machine's Pythons allow: make test [B
 hard: ## the hard cases, heavy ones too, into docs/stability.md and docs/stability.json
 	@$(TOOLS) hard --bpy "$(BPY)" $(ARGS)
 
-fuzz: ## thousands of inputs that nobody meant, through every public door; the Embree binding under valgrind, if installed
+fuzz: ## inputs that nobody meant, through every public door: make fuzz [ARGS="--seconds 60"] (of each target; 0 for none)
 	@$(TOOLS) fuzz --bpy "$(BPY)" $(ARGS)
 
 lint: ## format, clippy, ruff, types, stub against binary, layers

@@ -9,7 +9,6 @@ import argparse
 import os
 import shutil
 import sys
-import time
 from pathlib import Path
 
 from tools.environment import (
@@ -23,6 +22,7 @@ from tools.environment import (
     make_tools,
     python_of,
 )
+from tools.fuzz import fuzz_by_coverage
 from tools.machine import (
     PYTHON_OF_BPY,
     ROOT,
@@ -33,6 +33,7 @@ from tools.machine import (
     require,
     run,
     say,
+    timed,
 )
 from tools.memcheck import check_memory
 
@@ -82,26 +83,19 @@ def hard(options: argparse.Namespace) -> None:
 
 
 def fuzz(options: argparse.Namespace) -> None:
-    """Random input through the scene builder, records, settings, textures and the node compiler; memory by valgrind."""
+    """Input that nobody meant through every door: by coverage, at random, and the Embree binding under valgrind."""
     bpy = available_bpys(options.bpy)[-1]
     python = make_blender(bpy)
-    is_sound = check_memory(embree_library(f"bpy-{bpy}"))
+    embree = embree_library(f"bpy-{bpy}")
+    is_sound = check_memory(embree)
+    found = fuzz_by_coverage(python, bpy, embree, options.seconds) if options.seconds else []
     pytest = [python, "-m", "pytest", "tests/hard/test_hostile.py", *PATIENT, *options.more]
     if timed("hostile input", pytest, ROOT, RGP_EXAMPLES="3000"):
-        sys.exit("error: some input was not met with a message")
+        found.append("tests/hard/test_hostile.py")
+    if found:
+        sys.exit(f"error: some input was not met with a message: {', '.join(found)}")
     if not is_sound:
         sys.exit("error: the Embree crate's tests touch memory that is not theirs, or fail under valgrind")
-
-
-def timed(name: str, command: Command, directory: Path, **variables: str) -> int:
-    """Runs a test command and prints its time; its exit code."""
-    say(name)
-    start = time.monotonic()
-    code = run(command, directory, **variables)
-    say(
-        f"{name}: {'passed' if code == 0 else f'failed with code {code}'} in {time.monotonic() - start:.0f} s"
-    )
-    return code
 
 
 def lint(_options: argparse.Namespace) -> None:
@@ -111,6 +105,7 @@ def lint(_options: argparse.Namespace) -> None:
     install_core("tools", build_core())
     checks: list[tuple[Command, Path]] = [
         (["cargo", "fmt", "--all", "--check"], CORE),
+        (["cargo", "fmt", "--check"], CORE / "fuzz"),
         (["cargo", "clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"], CORE),
         ([tools, "-m", "ruff", "check", "."], ROOT),
         ([tools, "-m", "ruff", "format", "--check", "."], ROOT),
@@ -176,6 +171,13 @@ def main() -> None:
         )
         if command is render:
             subparser.add_argument("--scene", default="scenes/cornell_box.blend")
+        if command is fuzz:
+            subparser.add_argument(
+                "--seconds",
+                type=int,
+                default=600,
+                help="for each target that is guided by coverage; 0 for none",
+            )
         if command is extension:
             subparser.add_argument("--python", help="the Python of the Blender it is for, such as 3.13")
     options, more = parser.parse_known_args()

@@ -63,10 +63,10 @@ def check_rust(root: Path) -> Iterator[str]:
             if name in RUST_RANKS and name != module and not _allowed(RUST_RANKS, module, name):
                 yield f"{where}:{line}: {_upward(RUST_RANKS, module, name)}"
 
-    for crate in ("renderer", "python"):
+    for crate in ("renderer", "python", "fuzz"):
         if "#![forbid(unsafe_code)]" not in (root / f"core/{crate}/src/lib.rs").read_text():
             yield f"core/{crate}/src/lib.rs: must say #![forbid(unsafe_code)]; only the crate embree has unsafe code"
-    for crate in ("renderer", "embree"):
+    for crate in ("renderer", "embree", "fuzz"):
         if "pyo3" in (root / f"core/{crate}/Cargo.toml").read_text():
             yield f"core/{crate}/Cargo.toml: depends on pyo3; only the crate python knows Python"
 

@@ -97,7 +97,8 @@ def core_fingerprint() -> str:
         for path in CORE.glob(pattern)
     ]
     digest = hashlib.sha256()
-    for path in sorted(path for path in sources if "target" not in path.relative_to(CORE).parts):
+    no_part = {"target", "fuzz"}
+    for path in sorted(path for path in sources if not no_part & set(path.relative_to(CORE).parts)):
         digest.update(str(path.relative_to(CORE)).encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()[:8]
 

@@ -9,6 +9,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn, Union
@@ -58,6 +59,17 @@ def run(command: Command, directory: Path = ROOT, **variables: str) -> int:
         "PATH": f"{os.environ['PATH']}{os.pathsep}{Path.home() / '.cargo/bin'}",
     }
     return subprocess.run(command, cwd=directory, env=environment, check=False).returncode
+
+
+def timed(name: str, command: Command, directory: Path, **variables: str) -> int:
+    """Runs a test command and prints its time; its exit code."""
+    say(name)
+    start = time.monotonic()
+    code = run(command, directory, **variables)
+    say(
+        f"{name}: {'passed' if code == 0 else f'failed with code {code}'} in {time.monotonic() - start:.0f} s"
+    )
+    return code
 
 
 def require(command: Command, directory: Path = ROOT, **variables: str) -> None:

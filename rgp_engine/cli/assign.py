@@ -1,5 +1,6 @@
 """`--set GROUP.NAME=VALUE`: text to a property, with an answer that lists what exists when it does not fit."""
 
+import math
 from typing import Any
 
 from ..settings import setting_names
@@ -46,7 +47,7 @@ def _parse(b_property: Any, text: str) -> Any:
     kind = b_property.type
     try:
         if kind in ("INT", "FLOAT"):
-            number = int if kind == "INT" else float
+            number = _whole if kind == "INT" else _real
             if b_property.is_array:
                 values = tuple(number(part) for part in text.split("x"))
                 return values if len(values) == b_property.array_length else None
@@ -56,8 +57,22 @@ def _parse(b_property: Any, text: str) -> Any:
     if kind == "BOOLEAN":
         return {"true": True, "1": True, "false": False, "0": False}.get(text.lower())
     if kind == "ENUM":
-        return text if text in b_property.enum_items else None
+        return text if text in {item.identifier for item in b_property.enum_items} else None
     return text if kind == "STRING" else None
+
+
+def _whole(text: str) -> int:
+    value = int(text)
+    if not -(2**31) <= value < 2**31:
+        raise ValueError("Blender has no room for it, and may even crash on it")
+    return value
+
+
+def _real(text: str) -> float:
+    value = float(text)
+    if math.isnan(value):
+        raise ValueError("Blender takes it, and nothing can be done with it")
+    return value
 
 
 def _is_same(found: Any, value: Any) -> bool:

@@ -75,6 +75,7 @@ def _parts(folder: Folder, entry: Input, weight: float | Varying) -> list[Part]:
         return []
     if not isinstance(weight, Varying) and weight < _NEGLIGIBLE:
         return []
+    folder.meet_shader()
     kind = source.b_node.type
     if kind == "MIX_SHADER":
         factor = folder.unit(folder.value(source.input("Fac")))

@@ -34,6 +34,13 @@ class UnfoldableError(Exception):
     """A node whose result no constant can stand for."""
 
 
+TOO_DEEP = (RecursionError, MemoryError)
+"""What nodes in a circle, or in too long a chain, end with; Blender's answer to too deep a recursion is the second."""
+
+_MOST_SHADERS = 1000
+"""Shader nodes met on all ways through a tree, past which they are too many."""
+
+
 class Folder:
     """Folds the inputs of one material's, lamp's or world's nodes."""
 
@@ -41,6 +48,9 @@ class Folder:
         """Without `log` nothing is reported."""
         self._subject = subject
         self._log = ProblemLog() if log is None else log
+        self._folded: dict[tuple[Any, ...], Value | None] = {}
+        """Results of nodes; None where no constant can stand for one."""
+        self._shaders_met = 0
 
     def constant_color(self, entry: Input) -> Color:
         """Constant an input stands for, as a color or vector."""
@@ -75,6 +85,13 @@ class Folder:
     def note_normals(self, closure: int, source: Output) -> None:
         """Remembers the normals a closure's shader asks for: only compilers have use for them."""
 
+    def meet_shader(self) -> None:
+        """Counts a shader node: a few that branch and meet again can be met more often than there is time for. Raises
+        RecursionError."""
+        self._shaders_met += 1
+        if self._shaders_met > _MOST_SHADERS:
+            raise RecursionError("too many shader nodes")
+
     def typical(self, source: Output) -> Value:
         """A value that stands for a node's output."""
         try:
@@ -104,6 +121,18 @@ class Folder:
             return default
 
     def _node(self, output: Output) -> Value:
+        key = output.key
+        if key not in self._folded:
+            try:
+                self._folded[key] = self._computed(output)
+            except UnfoldableError:
+                self._folded[key] = None
+        found = self._folded[key]
+        if found is None:
+            raise UnfoldableError
+        return found
+
+    def _computed(self, output: Output) -> Value:
         b_node = output.b_node
         if b_node.mute:
             return _default(output.b_socket)

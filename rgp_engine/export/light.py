@@ -5,7 +5,7 @@ from typing import Any
 from .arithmetic import WHITE, Color, multiply, scale
 from .context import ExportContext
 from .coordinates import matrix_array
-from .fold import Folder
+from .fold import TOO_DEEP, Folder
 from .nodes import Input, Output, node_tree, origin, output_node
 from .visibility import instance_bits, owner
 
@@ -73,10 +73,16 @@ def _node_factor(context: ExportContext, b_light: Any) -> Color:
     b_output = None if b_tree is None else output_node(b_tree)
     if b_output is None:
         return WHITE
-    source = origin(Input(b_output.inputs["Surface"], ()))
     folder = Folder(b_light.name, context.log)
-    if isinstance(source, Output) and source.b_node.type == "EMISSION":
-        strength = folder.constant_value(source.input("Strength"))
-        return scale(folder.constant_color(source.input("Color")), strength)
+    try:
+        source = origin(Input(b_output.inputs["Surface"], ()))
+        if isinstance(source, Output) and source.b_node.type == "EMISSION":
+            strength = folder.constant_value(source.input("Strength"))
+            return scale(folder.constant_color(source.input("Color")), strength)
+    except TOO_DEEP:
+        folder.report(
+            "its nodes form a circle, or too long a chain; the light's own power and color are used"
+        )
+        return WHITE
     folder.report("its nodes are not a single Emission; the light's own power and color are used")
     return WHITE

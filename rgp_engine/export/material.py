@@ -5,6 +5,7 @@ from typing import Any
 from .closures import closures
 from .compiler import MOST_INSTRUCTIONS, Compiler, displace
 from .context import ExportContext
+from .fold import TOO_DEEP
 from .nodes import Input, Output, node_tree, origin, output_node
 
 _DEFAULT = {"weight": [1.0] * 3, "closure": {"kind": "diffuse", "color": [0.8] * 3}}
@@ -29,7 +30,7 @@ def material_index(context: ExportContext, b_material: Any | None) -> int:
 def _record_or_default(compiler: Compiler, b_material: Any) -> dict[str, Any]:
     try:
         return material_record(compiler, b_material)
-    except (RecursionError, MemoryError):  # Blender's answer to too deep a recursion is the second
+    except TOO_DEEP:
         compiler.report("its nodes form a circle, or too long a chain; Blender's default gray is used")
         return _default_record()
 

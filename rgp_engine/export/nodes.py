@@ -24,6 +24,12 @@ class Output(NamedTuple):
             raise KeyError(f"{self.b_node.bl_idname} has no input {identifier!r}")
         return entry
 
+    @property
+    def key(self) -> tuple[Any, ...]:
+        """The same for the same output of the same node within the same groups."""
+        groups = tuple(b_group.as_pointer() for b_group in self.groups)
+        return (self.b_node.as_pointer(), self.b_socket.identifier, groups)
+
     def find(self, identifier: str) -> Input | None:
         """As `input`, None where this version of Blender has no such input."""
         for b_socket in self.b_node.inputs:

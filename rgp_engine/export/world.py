@@ -6,7 +6,7 @@ from .arithmetic import BLACK, Color
 from .closures import emissions
 from .compiler import MOST_INSTRUCTIONS, Compiler, Register
 from .context import ExportContext
-from .fold import Varying, as_color
+from .fold import TOO_DEEP, Varying, as_color
 from .nodes import Input, Output, node_tree, origin, output_node
 from .visibility import world_bits
 
@@ -50,6 +50,14 @@ def world_radiance(context: ExportContext, b_world: Any) -> tuple[Color, dict[st
     if b_output is None:
         return BLACK, None
     compiler = WorldCompiler(context, b_world.name)
+    try:
+        return _compiled(compiler, b_output)
+    except TOO_DEEP:
+        compiler.report("its nodes form a circle, or too long a chain; black is used")
+        return BLACK, None
+
+
+def _compiled(compiler: WorldCompiler, b_output: Any) -> tuple[Color, dict[str, Any] | None]:
     if isinstance(origin(Input(b_output.inputs["Volume"], ())), Output):
         compiler.report("volumes are not supported yet; left out")
     parts = emissions(compiler, Input(b_output.inputs["Surface"], ()))

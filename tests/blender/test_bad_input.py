@@ -31,6 +31,61 @@ def test_nodes_in_a_circle(scene, rendered, problems):
     assert any("circle" in text for text in problems()), problems()
 
 
+def in_a_circle(b_id):
+    """Nodes whose emission has a strength that depends on itself."""
+    b_tree = build.shader_tree(b_id)
+    kind = "World" if isinstance(b_id, bpy.types.World) else "Light"
+    b_output = b_tree.nodes.new(f"ShaderNodeOutput{kind}")
+    b_emission, b_math = (b_tree.nodes.new(f"ShaderNode{kind}") for kind in ("Emission", "Math"))
+    build.connect(b_tree, b_emission, b_output, "Surface")
+    build.connect(b_tree, b_math, b_emission, "Strength")
+    build.connect(b_tree, b_math, b_math, "Value")
+
+
+def test_nodes_of_a_world_and_a_lamp_in_a_circle(scene, rendered, problems):
+    build.lit_room()
+    plain = rendered()
+    scene.world = bpy.data.worlds.new("Sky")
+    in_a_circle(scene.world)
+    in_a_circle(bpy.data.lights["Lamp"])
+    assert (rendered() == plain).all(), "a black world, and the lamp's own power"
+    for subject in ("Sky", "Lamp"):
+        assert any(t.startswith(f"{subject}: its nodes form a circle") for t in problems()), problems()
+
+
+@pytest.mark.parametrize("kind", ["Math", "AddShader", "MixShader"])
+def test_nodes_that_branch_and_meet_again_are_not_followed_on_every_way(scene, rendered, problems, kind):
+    """Forty of them have a trillion ways through."""
+    build.lit_room()
+    b_material, b_tree, b_output = build.material()
+    bpy.data.objects["Floor"].data.materials.append(b_material)
+    b_last = b_tree.nodes.new("ShaderNodeValue" if kind == "Math" else "ShaderNodeBsdfDiffuse")
+    for _ in range(40):
+        b_node = b_tree.nodes.new(f"ShaderNode{kind}")
+        for b_socket in list(b_node.inputs)[-2:]:
+            b_tree.links.new(b_last.outputs[0], b_socket)
+        b_last = b_node
+    if kind == "Math":
+        b_diffuse = b_tree.nodes.new("ShaderNodeBsdfDiffuse")
+        b_tree.links.new(b_last.outputs[0], b_diffuse.inputs["Roughness"])
+        b_last = b_diffuse
+    build.connect(b_tree, b_last, b_output, "Surface")
+    assert rendered()[..., :3].max() > 0.0
+    assert any("too long a chain" in text for text in problems()) == (kind != "Math"), problems()
+
+
+def test_a_sky_whose_sun_is_at_no_height(scene, rendered, problems):
+    build.lit_room()
+    b_material, b_tree, b_output = build.material()
+    bpy.data.objects["Floor"].data.materials.append(b_material)
+    b_sky, b_diffuse = b_tree.nodes.new("ShaderNodeTexSky"), b_tree.nodes.new("ShaderNodeBsdfDiffuse")
+    b_sky.sun_elevation = math.inf
+    build.connect(b_tree, b_sky, b_diffuse, "Color")
+    build.connect(b_tree, b_diffuse, b_output, "Surface")
+    assert np.isfinite(rendered()).all()
+    assert any("a typical value is used" in text for text in problems()), problems()
+
+
 def test_no_light(scene, rendered, problems):
     build.add_camera()
     build.add_object("Floor", build.quad())

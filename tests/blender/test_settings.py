@@ -1,7 +1,10 @@
 """The property groups against the core's table of settings."""
 
+import pytest
 import rgp_core
 
+from rgp_engine.cli import CommandError
+from rgp_engine.cli.assign import assign
 from rgp_engine.settings import core_settings, setting_names
 
 
@@ -62,3 +65,19 @@ def test_the_largest_and_smallest_values_are_allowed(scene):
             for value in values:
                 setattr(b_group, name, value)
                 rgp_core.check_settings(core_settings(scene))
+
+
+@pytest.mark.parametrize(
+    ("assignment", "allowed"),
+    [
+        ("gather.rays=99999999999", "a whole number from 1 to 4096"),
+        ("pyramid.bins=99999999999x16", "whole numbers from 1 to 64"),
+        ("gather.retrace_distance=nan", "a number from 0 to 8"),
+        ("gather.sampling=\udcff", "one of cosine, uniform"),
+    ],
+)
+def test_what_no_property_can_hold_is_refused_and_changes_nothing(scene, assignment, allowed):
+    before = core_settings(scene)
+    with pytest.raises(CommandError, match=allowed):
+        assign(scene, assignment)
+    assert core_settings(scene) == before

@@ -10,6 +10,8 @@ from tools.rust_paths import crate_modules
 CLEAN = {
     "core/renderer/Cargo.toml": "",
     "core/embree/Cargo.toml": "",
+    "core/fuzz/Cargo.toml": "",
+    "core/fuzz/src/lib.rs": "#![forbid(unsafe_code)]\n",
     "core/renderer/src/lib.rs": "#![forbid(unsafe_code)]\npub mod render;\n",
     "core/python/src/lib.rs": "#![forbid(unsafe_code)]\n",
     "core/renderer/src/math/mod.rs": "use crate::error::RenderError;\n",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tools import machine
+from tools import fuzz, machine
 from tools.environment import add_local_version
 from tools.extension import embreex_requirement, manifest_for
 
@@ -117,3 +117,39 @@ def test_wheels_are_listed_before_the_first_table_of_the_manifest() -> None:
 def test_the_embree_wheel_is_pinned_by_hash() -> None:
     entry = "embreex==4.4 \\\n    --hash=sha256:bb \\\n    --hash=sha256:cc\n"
     assert embreex_requirement(f"a==1 \\\n    --hash=sha256:aa\n{entry}    # via x\nz==1\n") == entry
+
+
+def test_what_cannot_be_fuzzed_is_said_with_what_is_missing(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(fuzz, "run", lambda *command, **variables: 1)
+    assert fuzz.fuzz_by_coverage(Path("python"), "5.0.1", Path("embree"), 1) == []
+    said = capsys.readouterr().out
+    assert "the core is not fuzzed by coverage: there is no cargo-fuzz here" in said
+    assert "the add-on is not fuzzed by coverage: atheris cannot be installed beside bpy 5.0.1" in said
+
+
+def test_a_corpus_begins_alike_everywhere_and_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fuzz, "CORPORA", tmp_path)
+    monkeypatch.setattr(fuzz, "_core_targets", dict)
+    monkeypatch.setattr(fuzz, "_addon_targets", lambda *_: {"addon-one": ["one"], "addon-two": ["two"]})
+    commands = []
+
+    def finds_in_two(name: str, command: list[str], *_: object, **__: str) -> int:
+        commands.append(list(map(str, command)))
+        return int(command[0] == "two")
+
+    monkeypatch.setattr(fuzz, "timed", finds_in_two)
+    arguments = (Path("python"), "5.0.1", Path("embree"), 7)
+    assert fuzz.fuzz_by_coverage(*arguments) == ["addon-two"]
+    assert all("-max_total_time=7" in command for command in commands)
+    corpora = [tmp_path / name / "corpus" for name in ("addon-one", "addon-two")]
+    one, two = ({path.name: path.read_bytes() for path in corpus.iterdir()} for corpus in corpora)
+    assert one == two
+    assert len(one) == fuzz.SEEDS
+    for seed in list(corpora[0].iterdir())[1:]:
+        seed.unlink()
+    fuzz.fuzz_by_coverage(*arguments)
+    assert len(list(corpora[0].iterdir())) == 1

@@ -430,7 +430,9 @@ impl Knob {
             Kind::Enum { choices } => format!("one of {}", choices.join(", ")),
             Kind::Bins => "elevation x azimuth from 1x1 to 32x64, such as 8x16".into(),
         };
-        Err(RenderError::Settings(format!("{}.{} is {value}; allowed is {allowed}", self.group, self.name)))
+        // JSON has no NaN and no infinity: they arrive as nothing.
+        let found = if value.is_null() { "not a number".into() } else { value.to_string() };
+        Err(RenderError::Settings(format!("{}.{} is {found}; allowed is {allowed}", self.group, self.name)))
     }
 }
 
@@ -477,6 +479,9 @@ mod tests {
         ] {
             assert!(RenderSettings::from_json(&bad).is_err(), "{bad} was accepted");
         }
+        let nan = json!({"gather": {"retrace_distance": f64::NAN}});
+        let message = RenderSettings::from_json(&nan).unwrap_err().to_string();
+        assert!(message.contains("gather.retrace_distance is not a number; allowed is"), "{message}");
         let message = RenderSettings::from_json(&json!({"gather": {"rayz": 1}})).unwrap_err().to_string();
         assert!(message.contains("gather.rayz") && message.contains("gather.rays"), "{message}");
     }

@@ -5,6 +5,7 @@ mod support;
 use glam::{DMat4, DVec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::error::RenderError;
+use rgp_renderer::scene::record::CameraRecord;
 use rgp_renderer::scene::{LampShape, MeshArrays, Scene, SceneBuilder};
 use rgp_renderer::settings::RenderSettings;
 use support::*;
@@ -159,6 +160,54 @@ fn lamps_that_cannot_shine() {
         let mut bad = Room::default().builder();
         bad.add_lamp(lamp(shape, power, position));
         assert_harmless(Room::default().builder(), bad, "lamp", message, 1);
+    }
+}
+
+/// Finite, and still more than can be worked with.
+#[test]
+fn objects_larger_smaller_and_farther_than_numbers_go() {
+    let far = DMat4::from_translation(DVec3::X * 1e300);
+    let large = DMat4::from_scale(DVec3::splat(1e200));
+    let small = DMat4::from_scale(DVec3::new(1e-320, 1.0, 1.0));
+    for transform in [far, large, small] {
+        let mut bad = Room::default().builder();
+        place_at(&mut bad, floor(0.3, 0.0), &[diffuse(0.5)], transform);
+        assert_harmless(Room::default().builder(), bad, "object", "than numbers go", 1);
+    }
+}
+
+#[test]
+fn lamps_larger_and_farther_than_numbers_go() {
+    let square = |side| LampShape::Rectangle { size: [side, side], spread: 1.0 };
+    let far = DVec3::X * 1e60;
+    let spot = |cone_angle| LampShape::Spot { radius: 0.1, soft_falloff: true, cone_angle, blend: 0.0 };
+    let lamps = [
+        lamp(square(1.0), 1.0, far),
+        lamp(square(1e30), 1.0, DVec3::ZERO),
+        lamp(spot(f32::NAN), 1.0, DVec3::ZERO),
+        lamp(LampShape::Sun { angle: f32::INFINITY }, 1.0, DVec3::ZERO),
+    ];
+    for record in lamps {
+        let mut bad = Room::default().builder();
+        bad.add_lamp(record);
+        assert_harmless(Room::default().builder(), bad, "lamp", "than numbers go", 1);
+    }
+}
+
+#[test]
+fn cameras_farther_than_numbers_go_are_an_error() {
+    let sound = camera(DVec3::Z, DVec3::ZERO, 1.0, 8);
+    let mut far = sound.clone();
+    far.world_from_camera[0][3] = 1e300;
+    let window = [-1e300, 1.0, -1.0, 1.0];
+    let wide = CameraRecord { window, ..sound.clone() };
+    let unclipped = CameraRecord { clip: [f64::NAN, 1.0], ..sound.clone() };
+    let shutter = CameraRecord { shutter: vec![1e308, 0.0, 1e308, 1e308], ..sound };
+    for record in [far, wide, unclipped, shutter] {
+        let mut builder = Room::default().builder();
+        builder.set_camera(record);
+        let Err(RenderError::Scene(message)) = builder.finish() else { panic!("such a camera passed") };
+        assert!(message.starts_with("camera 'camera': "), "{message}");
     }
 }
 

@@ -115,14 +115,14 @@ class Compiler(Folder):
         source = origin(entry)
         if isinstance(source, Input) or source.b_node.mute or not self.varies(source):
             return self.fold(entry)
-        key = (*_key(source), self.aside)
+        key = (*source.key, self.aside)
         if key not in self._known:
             self._known[key] = self._emit_node(source)
         return self._converted(self._known[key], source.b_socket.type, entry.b_socket.type)
 
     def varies(self, source: Output) -> bool:
         """True when a node gives another result from point to point."""
-        key = _key(source)
+        key = source.key
         if key not in self._varies:
             self._varies[key] = False  # should the tree run in a circle
             self._varies[key] = self._looks_varying(source)
@@ -138,7 +138,10 @@ class Compiler(Folder):
         return any(isinstance(found, Output) and self.varies(found) for found in behind)
 
     def _emit_node(self, source: Output) -> Operand:
-        found = NODES[source.b_node.type](self, source)
+        try:
+            found = NODES[source.b_node.type](self, source)
+        except (ValueError, OverflowError):
+            found = None  # beyond all numbers, where there is no result
         if found is not None:
             return found
         default = self._silent.typical(source)
@@ -226,8 +229,3 @@ def _operand(value: Value | Varying) -> Operand:
 
 def _typical(value: Value | Varying) -> Value:
     return value.typical if isinstance(value, Varying) else value
-
-
-def _key(source: Output) -> tuple[Any, ...]:
-    groups = tuple(b_group.as_pointer() for b_group in source.groups)
-    return (source.b_node.as_pointer(), source.b_socket.identifier, groups)

@@ -12,7 +12,8 @@ use super::record::{
     visibility,
 };
 use super::{
-    Lamp, Material, MaterialProgram, Mesh, Object, Problem, Scene, SceneSpace, World, WorldProgram, motion,
+    LARGEST, Lamp, Material, MaterialProgram, Mesh, Object, Problem, Scene, SceneSpace, World, WorldProgram,
+    motion,
 };
 use crate::color::Rgb;
 use crate::error::RenderError;
@@ -207,8 +208,9 @@ impl SceneBuilder {
             RenderError::Scene("the scene has no camera; add one and make it the active camera".into())
         })?;
         self.meshes.iter_mut().for_each(|mesh| mesh.drop_bad_triangles(&mut self.problems));
-        self.keep_usable_objects();
-        let space = self.measure();
+        let bounds: Vec<_> = self.meshes.iter().map(MeshArrays::bounds).collect();
+        self.keep_usable_objects(&bounds);
+        let space = self.measure(&bounds);
         let camera = place_camera(&camera, &space)?;
         let lamps = self.place_lamps(&space);
         let objects = self.place_objects(&space);
@@ -223,7 +225,7 @@ impl SceneBuilder {
         Ok(Scene { space, objects, materials, textures, lamps, camera, world, bounds, problems })
     }
 
-    fn keep_usable_objects(&mut self) {
+    fn keep_usable_objects(&mut self, bounds: &[[DVec3; 2]]) {
         let (meshes, problems) = (&self.meshes, &mut self.problems);
         self.objects.retain(|object| {
             let transform = &object.world_from_object;
@@ -235,17 +237,26 @@ impl SceneBuilder {
                 problems.add(&object.name, "its scale is zero along an axis; the object is left out", 1);
                 return false;
             }
-            object.visibility != 0 && !meshes[object.mesh].triangles.is_empty()
+            if object.visibility == 0 || meshes[object.mesh].triangles.is_empty() {
+                return false;
+            }
+            let boxes = object.placements().into_iter().map(|place| box_about(bounds[object.mesh], &place));
+            let is_near = |corner: DVec3| corner.abs().max_element() <= LARGEST;
+            if !(boxes.flatten().all(is_near) && transform.inverse().is_finite()) {
+                let what = "it is larger, smaller or farther away than numbers go; the object is left out";
+                problems.add(&object.name, what, 1);
+                return false;
+            }
+            true
         });
     }
 
     /// Scene space from the bounds of everything, in f64.
-    fn measure(&self) -> SceneSpace {
+    fn measure(&self, bounds: &[[DVec3; 2]]) -> SceneSpace {
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let mesh_bounds: Vec<_> = self.meshes.iter().map(MeshArrays::bounds).collect();
         for object in &self.objects {
             for placement in object.placements() {
-                let [a, b] = box_about(mesh_bounds[object.mesh], &placement);
+                let [a, b] = box_about(bounds[object.mesh], &placement);
                 (low, high) = (low.min(a), high.max(b));
             }
         }

@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3};
 use super::builder::Problems;
 use super::mesh::is_step_count;
 use super::record::{CameraRecord, LampRecord, LampShape, matrix, visibility};
-use super::{Camera, Lamp, Lens, Projection, SceneSpace, Shutter, motion};
+use super::{Camera, LARGEST, Lamp, Lens, Projection, SceneSpace, Shutter, motion};
 use crate::error::RenderError;
 
 pub(super) fn place_camera(record: &CameraRecord, space: &SceneSpace) -> Result<Camera, RenderError> {
@@ -32,8 +32,11 @@ pub(super) fn place_camera(record: &CameraRecord, space: &SceneSpace) -> Result<
     if rw == 0 || rh == 0 || rx.saturating_add(rw) > frame_w || ry.saturating_add(rh) > frame_h {
         return Err(fault("the part of the frame to render is empty or outside the frame"));
     }
+    if record.clip.iter().any(|d| d.is_nan()) {
+        return Err(fault("its clip distances are not numbers"));
+    }
     #[expect(clippy::cast_possible_truncation, reason = "clip distances need no more than f32")]
-    let clip = record.clip.map(|d| (d * space.scale) as f32);
+    let clip = record.clip.map(|d| (d * space.scale).clamp(-LARGEST, LARGEST) as f32);
     let lens = match &record.lens {
         Some(lens) => Lens::new(lens, space.scale).map_err(fault)?,
         None => None,
@@ -72,7 +75,11 @@ fn camera_view(
         return Err("its field of view is empty");
     }
     let origin = space.scene_from_world().transform_point3(matrix.translation);
-    Ok((DAffine3::from_cols(x, y, z, origin), window.map(|v| v * length)))
+    let window = window.map(|v| v * length);
+    if !origin.to_array().iter().chain(&window).all(|v| v.abs() <= LARGEST) {
+        return Err("it is farther away, or sees farther to its sides, than numbers go");
+    }
+    Ok((DAffine3::from_cols(x, y, z, origin), window))
 }
 
 pub(super) fn place_lamp(record: LampRecord, space: &SceneSpace, problems: &mut Problems) -> Option<Lamp> {
@@ -126,7 +133,7 @@ pub(super) fn place_lamp(record: LampRecord, space: &SceneSpace, problems: &mut 
     let is_sun = matches!(shape, LampShape::Sun { .. });
     #[expect(clippy::cast_possible_truncation, reason = "the factor is a power of two")]
     let power = if is_sun { power } else { power * (space.scale * space.scale) as f32 };
-    Some(Lamp {
+    let lamp = Lamp {
         name: record.name,
         shape,
         power,
@@ -138,7 +145,28 @@ pub(super) fn place_lamp(record: LampRecord, space: &SceneSpace, problems: &mut 
         visibility: record.visibility & (visibility::ALL | visibility::CATCHER),
         casts_shadow: record.casts_shadow,
         links: record.links,
-    })
+    };
+    if !is_within_numbers(&lamp) {
+        let what = "its size, distance or power is larger than numbers go; the lamp is left out";
+        problems.add(&lamp.name, what, 1);
+        return None;
+    }
+    (!lamp.power.is_black()).then_some(lamp)
+}
+
+/// Whether everything about a lamp can be worked with in f32.
+fn is_within_numbers(lamp: &Lamp) -> bool {
+    let shape = match lamp.shape {
+        LampShape::Point { radius, .. } => [radius, 0.0, 0.0],
+        LampShape::Spot { radius, cone_angle, blend, .. } => [radius, cone_angle, blend],
+        LampShape::Sun { angle } => [angle, 0.0, 0.0],
+        LampShape::Rectangle { size, spread } | LampShape::Ellipse { size, spread } => {
+            [size[0], size[1], spread]
+        }
+    };
+    let place = lamp.position.to_array();
+    let numbers = shape.iter().chain(&place).chain(&lamp.stretch);
+    lamp.power.is_finite() && numbers.into_iter().all(|&v| f64::from(v.abs()) <= LARGEST)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "lengths in scene space are near one")]

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec2;
 use serde::Deserialize;
 
+use super::LARGEST;
 use crate::sampling::concentric_disk;
 
 /// A thin lens as the host describes it.
@@ -43,10 +44,13 @@ impl Lens {
         if ![radius, rotation, ratio, focus_distance].iter().all(|v| v.is_finite()) {
             return Err("its lens is not a number");
         }
+        let (radius, focus_distance) = (radius * scale, focus_distance * scale);
         if focus_distance <= 0.0 || ratio <= 0.0 {
             return Err("its lens has no plane of focus, or an aperture without height");
         }
-        let (radius, focus_distance) = (radius * scale, focus_distance * scale);
+        if [radius, radius / ratio, radius / ratio / focus_distance].iter().any(|v| v.abs() > LARGEST) {
+            return Err("its lens is larger than numbers go");
+        }
         Ok((radius > 0.0).then_some(Self { radius, blades, rotation, ratio, focus_distance }))
     }
 
@@ -140,6 +144,9 @@ mod tests {
         assert!(Lens::new(&LensRecord { radius: 0.0, ..record.clone() }, 1.0).unwrap().is_none());
         assert!(Lens::new(&LensRecord { focus_distance: 0.0, ..record.clone() }, 1.0).is_err());
         assert!(Lens::new(&LensRecord { radius: f64::NAN, ..record.clone() }, 1.0).is_err());
+        assert!(Lens::new(&LensRecord { focus_distance: 1e-300, ..record.clone() }, 1e-300).is_err());
+        assert!(Lens::new(&LensRecord { radius: 1e30, ..record.clone() }, 1.0).is_err());
+        assert!(Lens::new(&LensRecord { ratio: 1e-30, ..record.clone() }, 1.0).is_err());
         assert!(Lens::new(&LensRecord { ratio: 0.0, ..record }, 1.0).is_err());
     }
 }

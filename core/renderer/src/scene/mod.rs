@@ -29,6 +29,9 @@ use crate::color::Rgb;
 use crate::shader::{Program, Register, Texture};
 use record::{NormalRecord, OutputRecord, WeightedClosure};
 
+/// Largest length that is worked with: its square is a number in f32 too.
+const LARGEST: f64 = 1e18;
+
 /// Where scene space lies in the world: `p_scene = (p_world - center) * scale`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneSpace {

@@ -40,6 +40,9 @@ impl Shutter {
             sum += 0.5 * (pair[0] + pair[1]);
             integral.push(sum);
         }
+        if !sum.is_finite() {
+            return Err("its shutter curve is larger than numbers go");
+        }
         integral.iter_mut().for_each(|value| *value /= sum);
         Ok(Self { curve: curve.iter().map(|value| value / sum).collect(), integral })
     }
@@ -142,6 +145,7 @@ mod tests {
     #[test]
     fn what_is_no_shutter_is_refused_or_even() {
         assert!(Shutter::new(&[0.0, f64::NAN]).is_err());
+        assert!(Shutter::new(&[1e308, 0.0, 1e308, 1e308]).is_err());
         for always_shut in [[0.0, 0.0], [-1.0, -2.0]] {
             assert_eq!(Shutter::new(&always_shut).expect("even").time(0.25).to_bits(), 0.25_f32.to_bits());
         }
