@@ -26,6 +26,9 @@ _MICROSECONDS_PER_PHOTON = {
 }
 _OVERHEAD_SECONDS = 0.1
 
+# Renders guessed to be shorter, such as some pilots, tell what it takes to begin one rather than what rays take.
+_LEAST_SECONDS = 0.5
+
 
 def guess(job: Job) -> float:
     """Seconds of a render, before anything is known about scene and machine."""
@@ -43,6 +46,8 @@ class Forecast:
 
     def learn(self, job: Job, seconds: float) -> None:
         """A render has taken that long."""
+        if guess(job) < _LEAST_SECONDS:
+            return
         for kind in _kinds(job):
             self._taken[kind] += seconds
             self._guessed[kind] += guess(job)

@@ -255,15 +255,21 @@ def test_the_doubt_is_that_of_noise():
 
 def test_forecasts_learn_from_what_is_most_alike():
     forecast = Forecast()
-    path = replace(JOB, estimator="path")
-    elsewhere = replace(JOB, scene="nave")
-    assert forecast.seconds([JOB, path]) == pytest.approx(guess(JOB) + guess(path))
-    forecast.learn(JOB, 3.0 * guess(JOB))
-    assert forecast.seconds([JOB]) == pytest.approx(3.0 * guess(JOB))
+    job = replace(JOB, size=(160, 120))
+    path, elsewhere = replace(job, estimator="path"), replace(job, scene="nave")
+    assert forecast.seconds([job, path]) == pytest.approx(guess(job) + guess(path))
+    forecast.learn(job, 3.0 * guess(job))
+    assert forecast.seconds([job]) == pytest.approx(3.0 * guess(job))
     assert forecast.seconds([path]) == pytest.approx(3.0 * guess(path))
     forecast.learn(path, 5.0 * guess(path))
-    assert forecast.seconds([JOB]) == pytest.approx(3.0 * guess(JOB))
+    assert forecast.seconds([job]) == pytest.approx(3.0 * guess(job))
     assert forecast.seconds([elsewhere]) == pytest.approx(guess(elsewhere))
+
+
+def test_forecasts_do_not_learn_from_what_is_over_at_once():
+    forecast = Forecast()
+    forecast.learn(JOB, 100.0 * guess(JOB))
+    assert forecast.seconds([JOB]) == pytest.approx(guess(JOB))
 
 
 def test_verdicts(document):
