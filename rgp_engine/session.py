@@ -3,11 +3,13 @@
 import platform
 import time
 import traceback
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import bpy
 
 from . import native, report, stats
+from .checkpoint import Checkpoint
 from .export import ExportedScene, export_scene
 from .export.context import Cancelled
 from .report import Outcome, ProblemLog, UserError
@@ -21,6 +23,7 @@ _STATUS_SECONDS = 0.25
 _PICTURE_SECONDS = 0.4
 # Writing the picture may take this share of the time at most, however large it is.
 _PICTURE_SHARE = 0.1
+_CHECKPOINT_SECONDS = 60.0
 
 
 class RenderSession:
@@ -78,9 +81,10 @@ class RenderSession:
         limited = {**settings, "render": {**machine, "memory_limit": limit}}
         core_session = native.core().Session(scene, limited, str(native.embree_library()))
         self._error_target = settings["gather"]["error_target"]
+        checkpoint = self._take_up(core_session)
         core_session.start()
         try:
-            self._watch(core_session, b_result)
+            self._watch(core_session, b_result, checkpoint)
         except BaseException:
             core_session.cancel()
             raise
@@ -88,17 +92,45 @@ class RenderSession:
             self._cancelled = not core_session.finish()
         _write_passes(core_session, b_result)
         core_stats = core_session.stats()
+        if checkpoint is not None and not self._cancelled:
+            self._keep(core_session, checkpoint, is_complete=core_stats["stopped_by"] == "rays")
         for warning in core_stats["warnings"]:
             self._log.add("Render", warning)
         self._stats = self._complete(core_stats, exported.seconds, settings)
 
-    def _watch(self, core_session: "rgp_core.Session", b_result: Any) -> None:
-        """Until the render has ended: obeys Esc, shows progress, and the picture as it fills in."""
+    def _take_up(self, core_session: "rgp_core.Session") -> Checkpoint | None:
+        """The view layer's checkpoint, if it has one, after what it holds has been given to the core."""
+        path = self._b_depsgraph.view_layer_eval.rgp.checkpoint
+        if not path:
+            return None
+        checkpoint = Checkpoint(Path(bpy.path.abspath(path)), core_session.fingerprint())
+        kept = checkpoint.read()
+        if kept is not None:
+            core_session.restore_film(*kept)
+        return checkpoint
+
+    def _keep(
+        self, core_session: "rgp_core.Session", checkpoint: Checkpoint, *, is_complete: bool = False
+    ) -> None:
+        """Keeps the passes so far; of a picture that is complete nothing has to be kept."""
+        try:
+            if is_complete:
+                checkpoint.remove()
+            elif (state := core_session.film_state()) is not None:
+                checkpoint.write(*state)
+        except OSError as error:
+            self._log.add(str(checkpoint.path), f"the checkpoint cannot be written: {error.strerror}")
+
+    def _watch(self, core_session: "rgp_core.Session", b_result: Any, checkpoint: Checkpoint | None) -> None:
+        """Until the render has ended: obeys Esc, shows progress, and the picture as it fills in; keeps its passes."""
         next_status = next_picture = time.monotonic()
+        next_checkpoint = next_status + _CHECKPOINT_SECONDS
         passes_shown = 0
         self._show_status(core_session.progress())
         while not core_session.wait(_POLL_SECONDS):
             if self._engine.test_break():
+                if checkpoint is not None:
+                    self._keep(core_session, checkpoint)
                 core_session.cancel()
                 return
             now = time.monotonic()
@@ -107,6 +139,9 @@ class RenderSession:
             next_status = now + _STATUS_SECONDS
             progress = core_session.progress()
             self._show_status(progress)
+            if checkpoint is not None and now >= next_checkpoint:
+                self._keep(core_session, checkpoint)
+                next_checkpoint = time.monotonic() + _CHECKPOINT_SECONDS
             if progress["passes_done"] > passes_shown and now >= next_picture:
                 passes_shown = progress["passes_done"]
                 _write_pass(b_result, "Combined", core_session.picture("combined"))

@@ -27,7 +27,9 @@ FREE_RANK = 0
 
 PYTHON_RANKS = {
     **dict.fromkeys(("report", "plot", "files"), 0),
-    **dict.fromkeys(("native", "stats", "settings", "accuracy", "properties", "preferences"), 1),
+    **dict.fromkeys(
+        ("native", "stats", "settings", "accuracy", "properties", "preferences", "checkpoint"), 1
+    ),
     **dict.fromkeys(("operators", "ui"), 2),
     "export": 3,
     **dict.fromkeys(("session", "sweep"), 4),
@@ -39,7 +41,7 @@ PYTHON_RANKS = {
 # Lower in rank, and still none of the importer's business.
 NEVER = {("ui", "native"), ("properties", "native"), ("preferences", "native"), ("operators", "native")}
 # These run and are tested without Blender.
-WITHOUT_BPY = {"report", "native", "settings", "plot", "accuracy", "files"}
+WITHOUT_BPY = {"report", "native", "settings", "plot", "accuracy", "files", "checkpoint"}
 # These serve a final render, whose scene is the depsgraph's and never the window's.
 WITHOUT_CONTEXT = {"engine", "session", "sweep", "export", "native", "settings", "stats", "report"}
 

@@ -110,6 +110,17 @@ class Session:
     """One render, on threads of its own. Nothing here holds the GIL while it waits."""
 
     def __new__(cls, scene: Scene, settings: dict[str, dict[str, Any]], embree_library: str) -> Session: ...
+    def fingerprint(self) -> str:
+        """Hexadecimal digits that two sessions share only if they make the same picture. All of the scene is read for them."""
+
+    def film_state(self) -> tuple[int, npt.NDArray[np.float32]] | None:
+        """Passes that are complete, and their sums (2, H, W, N), to go on from in another session; None where the last pass
+        was cut short."""
+
+    def restore_film(self, passes: int, sums: npt.NDArray[np.float32]) -> None:
+        """Before the start: takes up the passes of an earlier session of the same fingerprint. Raises RenderError when they
+        are of a picture of another size."""
+
     def start(self) -> None: ...
     def cancel(self) -> None:
         """Asks the render to stop; returns at once. What is finished stays readable."""

@@ -47,6 +47,12 @@ def add_arguments(commands: Any) -> None:
         type=Path,
         help="draw the cells that the audit found wrong over the picture",
     )
+    parser.add_argument(
+        "--checkpoint",
+        metavar="FILE",
+        type=Path,
+        help="keep the unfinished picture there once a minute; the same render goes on from what it finds there",
+    )
     add_scene_options(parser)
     parser.add_argument("--engine", choices=("RGP", "CYCLES"), default="RGP")
     parser.set_defaults(run=run)
@@ -58,8 +64,10 @@ def run(options: argparse.Namespace) -> None:
     wants_audit = options.audit_image is not None
     if wants_audit and options.engine != "RGP":
         raise CommandError("only RGP has a pyramid to audit")
-    for path in filter(None, outputs):
+    for path in filter(None, [*outputs, options.checkpoint]):
         _check_writable(path)
+    if options.checkpoint is not None and options.engine != "RGP":
+        raise CommandError("only RGP keeps an unfinished picture")
     blender_scene.register_engine()
     b_scene = blender_scene.open_scene(options.scene)
     blender_scene.choose_engine(b_scene, options.engine)
@@ -67,7 +75,10 @@ def run(options: argparse.Namespace) -> None:
     if wants_audit and b_scene.rgp.gather.audit == 0:
         raise CommandError("--audit-image needs an audit, and gather.audit is 0")
     start = time.perf_counter()
-    channels = _render(b_scene, wants_indirect=options.indirect is not None, wants_audit=wants_audit)
+    b_layer = blender_scene.keep_one_layer(b_scene)
+    if options.checkpoint is not None:
+        b_layer.rgp.checkpoint = str(options.checkpoint.absolute())
+    channels = _render(b_scene, b_layer, wants_indirect=options.indirect is not None, wants_audit=wants_audit)
     stats = _stats(options.engine, time.perf_counter() - start)
     exr.write(options.output, _layer(channels, "Combined", "RGBA"))
     if options.indirect:
@@ -90,9 +101,8 @@ def _write_stats(path: Path, stats: dict[str, Any]) -> None:
         raise CommandError(f"{path} cannot be written: {error.strerror}") from error
 
 
-def _render(b_scene: Any, *, wants_indirect: bool, wants_audit: bool) -> dict[str, Picture]:
-    """Renders one view layer and returns every channel of the result."""
-    b_layer = blender_scene.keep_one_layer(b_scene)
+def _render(b_scene: Any, b_layer: Any, *, wants_indirect: bool, wants_audit: bool) -> dict[str, Picture]:
+    """Renders the one view layer that is on and returns every channel of the result."""
     if wants_indirect:
         blender_scene.add_indirect_passes(b_scene, b_layer)
     if wants_audit:

@@ -14,7 +14,15 @@ def _update_passes(group: Any, _context: Any) -> None:
 
 
 class RGPViewLayerSettings(bpy.types.PropertyGroup):
-    """Passes of RGP Engine."""
+    """Passes of RGP Engine, and where a picture is kept that is not finished."""
+
+    checkpoint: bpy.props.StringProperty(
+        name="Checkpoint",
+        description="File that keeps the unfinished picture, once a minute and when the render is stopped: rendering "
+        "the same again goes on from there. Removed when the picture is finished; none if empty",
+        default="",
+        subtype="FILE_PATH",
+    )
 
     use_pass_indirect: bpy.props.BoolProperty(
         name="Indirect",

@@ -65,6 +65,17 @@ class RGP_PT_view_layer_passes(EnginePanel, Panel):
         draw_settings(self.layout, context.view_layer.rgp, *names)
 
 
+class RGP_PT_view_layer_checkpoint(ClosedEnginePanel, Panel):
+    """A picture that is not finished."""
+
+    bl_label = "Checkpoint"
+    bl_context = "view_layer"
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        draw_settings(self.layout, context.view_layer.rgp, "checkpoint")
+
+
 class RGP_PT_view_layer_override(ClosedEnginePanel, Panel):
     """Override."""
 
@@ -80,5 +91,6 @@ CLASSES = (
     RGP_PT_world_surface,
     RGP_PT_object_visibility,
     RGP_PT_view_layer_passes,
+    RGP_PT_view_layer_checkpoint,
     RGP_PT_view_layer_override,
 )

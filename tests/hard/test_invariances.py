@@ -2,8 +2,21 @@
 
 import numpy as np
 import pytest
+import rgp_core
 
-from tests.hard.scenes import Scene, closure, cuboid, diffuse, looking, moved, render, scaled, settings
+from rgp_engine import native
+from tests.hard.scenes import (
+    Picture,
+    Scene,
+    closure,
+    cuboid,
+    diffuse,
+    looking,
+    moved,
+    render,
+    scaled,
+    settings,
+)
 
 GROUP = "Invariances"
 POWER = 5.0
@@ -141,6 +154,27 @@ def test_threads_and_tiles(check, threads, tile):
     other = render(scene, settings(render__threads=threads, film__tile_size=tile))
     differing = bits_that_differ(render(scene), other)
     check(f"{threads} threads, tiles of {tile}: bits that differ", expected=0.0, got=differing, bound=0.0)
+
+
+def test_resuming(check):
+    """Stopped after two of sixteen passes, and taken up by a session of its own."""
+    scene = room().builder.finish()
+    values, embree = settings(gather__camera_samples=16), str(native.embree_library())
+    stopped = rgp_core.Session(scene, settings(gather__camera_samples=16, gather__time_limit=1e-3), embree)
+    stopped.start()
+    assert stopped.finish()
+    passes, sums = stopped.film_state()
+    assert passes == 2
+    resumed = rgp_core.Session(scene, values, embree)
+    assert resumed.fingerprint() == stopped.fingerprint()
+    resumed.restore_film(passes, sums)
+    resumed.start()
+    assert resumed.finish()
+    other = Picture(resumed.picture("combined"), resumed.picture("indirect"), resumed.stats(), [])
+    differing = bits_that_differ(render(scene, values), other)
+    check(
+        "stopped after 2 of 16 passes and resumed: bits that differ", expected=0.0, got=differing, bound=0.0
+    )
 
 
 def test_twenty_seeds(check):

@@ -176,3 +176,42 @@ def test_embree_that_is_none(room, tmp_path):
 
 def test_embree_version(embree):
     assert rgp_core.embree_version(embree).startswith("4.")
+
+
+def test_the_fingerprint_is_that_of_the_picture(room, embree):
+    """It stays where only the way to the picture changes, and changes with anything that is seen in it."""
+
+    def fingerprint(scene, **groups):
+        return rgp_core.Session(scene, {**SETTINGS, **groups}, embree).fingerprint()
+
+    scene = room.finish()
+    same = fingerprint(scene)
+    assert fingerprint(scene, render={"threads": 3}, film={"tile_size": 8}) == same
+    assert fingerprint(scene, gather={**SETTINGS["gather"], "audit": 7, "time_limit": 5.0}) == same
+    assert fingerprint(type(room)().finish()) == same
+    others = [fingerprint(scene, render={"seed": 1}), fingerprint(scene, film={"exposure": 2.0})]
+    for change in (
+        lambda other: other.positions.__setitem__((2, 0), np.nextafter(np.float32(2), np.float32(3))),
+        lambda other: other.material["closures"][0]["closure"].update(color=[0.5, 0.5, 0.500001]),
+        lambda other: other.lamp.update(power=[100.0, 100.0, 100.1]),
+        lambda other: other.camera.update(clip=[0.1, 101.0]),
+        lambda other: other.world.update(film_transparent=True),
+    ):
+        other = type(room)()
+        change(other)
+        others.append(fingerprint(other.finish()))
+    assert len({same, *others}) == 1 + len(others)
+
+
+def test_only_a_film_of_the_same_size_is_taken_up(room, embree):
+    session = rgp_core.Session(room.finish(), SETTINGS, embree)
+    passes, sums = session.film_state()
+    assert (passes, sums.shape[:3]) == (0, (2, 20, 30))
+    for wrong in (sums[:1], sums[:, :10], sums[..., :4], sums.swapaxes(1, 2)):
+        with pytest.raises(rgp_core.RenderError, match="another size"):
+            session.restore_film(2, wrong)
+    session.restore_film(passes, sums)
+    session.start()
+    session.finish()
+    with pytest.raises(rgp_core.RenderError, match="started already"):
+        session.restore_film(passes, sums)

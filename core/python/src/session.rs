@@ -5,15 +5,15 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use numpy::ndarray::{Array3, ShapeBuilder};
-use numpy::{IntoPyArray, PyArray3};
+use numpy::ndarray::{Array3, Array4, ShapeBuilder};
+use numpy::{IntoPyArray, PyArray3, PyArray4, PyReadonlyArray4};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rgp_renderer::error::RenderError as CoreError;
-use rgp_renderer::film::Film;
+use rgp_renderer::film::{Film, FilmState};
 use rgp_renderer::progress::Progress;
-use rgp_renderer::render::{check_memory, render};
+use rgp_renderer::render::{check_memory, fingerprint, render};
 use rgp_renderer::scene;
 use rgp_renderer::settings::RenderSettings;
 use rgp_renderer::stats::Stats;
@@ -63,6 +63,34 @@ impl Session {
             shared: Arc::new(shared),
             thread: Mutex::new(None),
         })
+    }
+
+    fn fingerprint(&self, py: Python<'_>) -> String {
+        format!("{:016x}", py.detach(|| fingerprint(&self.scene, &self.settings)))
+    }
+
+    fn film_state<'py>(&self, py: Python<'py>) -> PyResult<Option<(u32, Bound<'py, PyArray4<f32>>)>> {
+        let film = &self.shared.film;
+        let Some(FilmState { passes, size, sums, values_per_pixel }) = py.detach(|| film.state()) else {
+            return Ok(None);
+        };
+        let [width, height] = size;
+        let array = Array4::from_shape_vec((2, height, width, values_per_pixel), sums);
+        let array = array.map_err(|e| RenderError::new_err(e.to_string()))?;
+        Ok(Some((passes, array.into_pyarray(py))))
+    }
+
+    fn restore_film(&self, passes: u32, sums: PyReadonlyArray4<'_, f32>) -> PyResult<()> {
+        let thread = lock(&self.thread);
+        if thread.is_some() || *lock(&self.shared.ended) {
+            return Err(RenderError::new_err("this session has been started already"));
+        }
+        let sums = sums.as_array();
+        let (_, height, width, values_per_pixel) = sums.dim();
+        let sums = sums.iter().copied().collect();
+        let state = FilmState { passes, size: [width, height], sums, values_per_pixel };
+        let restored = self.shared.film.restore(&state, self.scene.world.film_transparent);
+        restored.map_err(to_python)
     }
 
     fn start(&self) -> PyResult<()> {

@@ -3,6 +3,7 @@
 mod aim;
 mod baselines;
 mod caustics;
+mod fingerprint;
 mod memory;
 mod surroundings;
 
@@ -30,6 +31,7 @@ use crate::settings::{EstimatorKind, RenderSettings, Switch, parse_bins};
 use crate::shader::Texture;
 use crate::stats::{EstimatorStats, Stats, TextureCounts};
 
+pub use fingerprint::fingerprint;
 use memory::Budget;
 pub use memory::check_memory;
 use surroundings::SceneSurroundings;

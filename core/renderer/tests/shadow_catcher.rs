@@ -59,7 +59,7 @@ fn a_pixel_is_what_is_beside_catchers_and_their_shadow() {
                 PixelSample { direct: Rgb::splat(direct), alpha: 1.0, taken: true, ..PixelSample::default() };
             film.take_catchers(0, vec![caught]);
             film.take(0, vec![seen]);
-            film.finish_pass(1, half);
+            film.finish_pass(1, half, true);
         }
         let [light, alpha] = expected;
         assert_eq!(film.combined(), [light, light, light, alpha]);
@@ -80,7 +80,7 @@ fn half_a_pixel_of_a_catcher_is_half_as_much_shadow() {
         let (direct, without) = (Rgb::splat(0.25 * share), Rgb::splat(0.5 * share));
         film.take_catchers(0, vec![CatcherSample { is_caught, without, ..CatcherSample::default() }]);
         film.take(0, vec![PixelSample { direct, alpha: share, taken: true, ..PixelSample::default() }]);
-        film.finish_pass(1, half);
+        film.finish_pass(1, half, true);
     }
     assert_eq!(film.combined(), [0.0, 0.0, 0.0, 0.25]);
     assert_eq!(film.shadow_catcher(), [0.75; 3]);

@@ -54,6 +54,21 @@ pub(super) struct CatcherSums {
 }
 
 impl CatcherSums {
+    /// Numbers it is made of.
+    pub(super) const VALUES: usize = Sums::VALUES + 6;
+
+    /// The numbers it is made of.
+    pub(super) fn values(&self) -> impl Iterator<Item = f32> {
+        self.seen.values().into_iter().chain(self.without.0).chain(self.background.0)
+    }
+
+    /// From the numbers it is made of.
+    pub(super) fn from_values(values: &[f32; Self::VALUES]) -> Self {
+        let light = |first: usize| Rgb(std::array::from_fn(|c| values[Sums::VALUES + first + c]));
+        let seen = Sums::from_values(values.first_chunk().unwrap_or(&[0.0; Sums::VALUES]));
+        Self { seen, without: light(0), background: light(3) }
+    }
+
     fn add(&mut self, weighted: &Channels, gather_rays: f32) {
         let (seen, light) = weighted.split_first_chunk().unwrap_or((&[0.0; CHANNELS], &[]));
         self.seen.add(seen, gather_rays);
@@ -156,6 +171,11 @@ impl Catchers {
     /// Sums of the passes of either half.
     pub(super) fn halves(&self) -> RwLockReadGuard<'_, [Vec<CatcherSums>; 2]> {
         self.halves.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Takes the sums of other passes instead.
+    pub(super) fn restore(&self, halves: [Vec<CatcherSums>; 2]) {
+        *self.halves.write().unwrap_or_else(PoisonError::into_inner) = halves;
     }
 
     /// The sums of one sample of the pass that is under way, of which `all` are the channels.

@@ -10,6 +10,7 @@
 mod catcher;
 mod error;
 mod filter;
+mod state;
 mod sums;
 
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError, RwLock};
@@ -22,6 +23,7 @@ use crate::stats::PictureError;
 pub use catcher::CatcherSample;
 use catcher::{CatcherSums, Catchers};
 use filter::Filter;
+pub use state::FilmState;
 use sums::{CHANNELS, Sums};
 
 /// Pixels along an edge of the smallest unit of work; tiles are made of whole blocks, so that the picture does not
@@ -77,13 +79,21 @@ pub struct Film {
     /// Samples of the pass that is under way, by tile.
     pass: Vec<Mutex<Vec<PixelSample>>>,
     spread: Mutex<Spread>,
-    /// Of the passes of either half.
-    halves: RwLock<[Vec<Sums>; 2]>,
+    halves: RwLock<Halves>,
     nonfinite: Mutex<u64>,
     /// Where the light is known to be wrong; empty where nothing is.
     audit: RwLock<Vec<f32>>,
     /// What is kept where there are shadow catchers, and only there.
     catchers: OnceLock<Catchers>,
+}
+
+/// The passes so far.
+#[derive(Debug)]
+struct Halves {
+    /// Of the passes of either half.
+    sums: [Vec<Sums>; 2],
+    /// How many there are; `None` once one of them was cut short.
+    passes: Option<u32>,
 }
 
 /// The samples of a pass in the order of the picture's pixels, ready to be added to the pixels around them.
@@ -117,7 +127,7 @@ impl Film {
             tiles,
             edge: edge as usize,
             spread: Mutex::default(),
-            halves: RwLock::new([black(), black()]),
+            halves: RwLock::new(Halves { sums: [black(), black()], passes: Some(0) }),
             nonfinite: Mutex::new(0),
             audit: RwLock::default(),
             catchers: OnceLock::new(),
@@ -180,12 +190,13 @@ impl Film {
     }
 
     /// Adds the samples of the pass, of `gather_rays` rays a pixel, to one half of the picture (0 or 1). A pass that was
-    /// cut short adds what it has.
-    pub fn finish_pass(&self, gather_rays: u32, half: usize) {
+    /// cut short, which is not `whole`, adds what it has.
+    pub fn finish_pass(&self, gather_rays: u32, half: usize, whole: bool) {
         let mut spread = lock(&self.spread);
         self.prepare(&mut spread);
         let mut halves = self.halves.write().unwrap_or_else(PoisonError::into_inner);
-        halves[half].par_chunks_mut(self.width.max(1)).enumerate().for_each(|(y, row)| {
+        halves.passes = halves.passes.filter(|_| whole).map(|passes| passes + 1);
+        halves.sums[half].par_chunks_mut(self.width.max(1)).enumerate().for_each(|(y, row)| {
             for (x, sums) in row.iter_mut().enumerate() {
                 sums.add(&self.around(&spread.channels, &spread.weights, [x, y]), gather_rays as f32);
             }
@@ -232,7 +243,7 @@ impl Film {
     #[must_use]
     pub fn error(&self) -> Vec<f32> {
         let halves = self.halves.read().unwrap_or_else(PoisonError::into_inner);
-        let [a, b] = &*halves;
+        let [a, b] = &halves.sums;
         a.par_iter().zip(b).map(|(a, b)| self.exposure * error::of_pixel(a, b).sqrt()).collect()
     }
 
@@ -240,7 +251,7 @@ impl Film {
     #[must_use]
     pub fn mean(&self) -> f64 {
         let halves = self.halves.read().unwrap_or_else(PoisonError::into_inner);
-        let [a, b] = &*halves;
+        let [a, b] = &halves.sums;
         let sum: f64 = a.iter().zip(b).map(|(a, b)| f64::from(a.with(b).combined().mean())).sum();
         sum / (self.width * self.height).max(1) as f64
     }
@@ -262,14 +273,14 @@ impl Film {
     #[must_use]
     pub fn picture_error(&self) -> Option<PictureError> {
         let halves = self.halves.read().unwrap_or_else(PoisonError::into_inner);
-        let [a, b] = &*halves;
+        let [a, b] = &halves.sums;
         error::of_picture(a, b, self.width)
     }
 
     fn read<const N: usize>(&self, value: impl Fn(&Sums, Option<CatcherSums>) -> [f32; N]) -> Vec<f32> {
         let catchers = self.catchers.get();
         let halves = self.halves.read().unwrap_or_else(PoisonError::into_inner);
-        let [a, b] = &*halves;
+        let [a, b] = &halves.sums;
         if a.iter().any(Sums::is_known) {
             let caught = catchers.map(Catchers::halves);
             let of_pixel = |i: usize| caught.as_ref().map(|halves| halves[0][i].with(&halves[1][i]));
@@ -366,7 +377,7 @@ mod tests {
                 (0..rect.width * rect.height).map(|i| (rect.x + i % rect.width, rect.y + i / rect.width));
             film.take(index, pixels.map(|(x, y)| value(x, y)).collect());
         }
-        film.finish_pass(rays, half);
+        film.finish_pass(rays, half, true);
     }
 
     #[test]

@@ -14,6 +14,19 @@ pub(super) struct Sums {
 }
 
 impl Sums {
+    /// Numbers it is made of.
+    pub(super) const VALUES: usize = CHANNELS + 1;
+
+    /// The numbers it is made of.
+    pub(super) fn values(&self) -> [f32; Self::VALUES] {
+        std::array::from_fn(|i| *self.channels.get(i).unwrap_or(&self.rays))
+    }
+
+    /// From the numbers it is made of.
+    pub(super) fn from_values(values: &[f32; Self::VALUES]) -> Self {
+        Self { channels: std::array::from_fn(|i| values[i]), rays: values[CHANNELS] }
+    }
+
     /// Adds weighted samples of `gather_rays` gather rays each.
     #[inline]
     pub(super) fn add(&mut self, weighted: &[f32; CHANNELS], gather_rays: f32) {

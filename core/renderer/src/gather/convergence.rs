@@ -12,6 +12,8 @@ use super::stop::Stop;
 #[derive(Clone, Debug)]
 pub(super) struct Convergence {
     began: Duration,
+    /// Passes that an earlier render made.
+    pub(super) first: u32,
     /// Since the start of the render, after the last pass.
     now: Duration,
     /// Passes, error (percent of the mean).
@@ -19,9 +21,9 @@ pub(super) struct Convergence {
 }
 
 impl Convergence {
-    /// Nothing measured yet; the gather begins at `began`, since the start of the render.
-    pub(super) const fn new(began: Duration) -> Self {
-        Self { began, now: began, measured: Vec::new() }
+    /// Nothing measured yet; the gather begins at `began`, since the start of the render, with `first` passes made.
+    pub(super) const fn new(began: Duration, first: u32) -> Self {
+        Self { began, first, now: began, measured: Vec::new() }
     }
 
     /// Notes the error after `passes` passes.
@@ -39,7 +41,7 @@ impl Convergence {
     pub(super) fn outlook(&self, passes: u32, stop: &Stop) -> Option<Outlook> {
         let &(done, error) = self.measured.last()?;
         let [gather, photons] = self.fit();
-        let per_pass = (self.now - self.began).as_secs_f64() / f64::from(done);
+        let per_pass = (self.now - self.began).as_secs_f64() / f64::from(done - self.first);
         let seconds_to_target = stop.error_target.and_then(|target| {
             let needed = gather / (target * target - photons);
             (needed > 0.0 && needed <= f64::from(passes))
@@ -81,7 +83,7 @@ mod tests {
     use crate::stats::StoppedBy;
 
     fn measured(errors: impl Iterator<Item = (u32, f64)>) -> Convergence {
-        let mut convergence = Convergence::new(Duration::from_secs(2));
+        let mut convergence = Convergence::new(Duration::from_secs(2), 0);
         for (n, square) in errors {
             let error = PictureError { rms_clipped: square.sqrt(), rms_mean: 0.0, rms_peak: 0.0 };
             convergence.add(n, Duration::from_secs(2 + u64::from(n) * 3), Some(error));
@@ -115,10 +117,14 @@ mod tests {
     fn the_time_limit_ends_before_the_pass_that_would_pass_it() {
         let settings = GatherSettings { time_limit: 10.0, ..Default::default() };
         let stop = Stop::new(&settings, Duration::from_secs(2));
-        let convergence = Convergence::new(Duration::from_secs(2));
+        let convergence = Convergence::new(Duration::from_secs(2), 0);
         let after = |passes, seconds| stop.reason(&convergence, passes, Duration::from_secs(seconds));
         assert_eq!(after(1, 60), None, "each set of photons is read once");
         assert_eq!(after(2, 8), Some(StoppedBy::Time));
         assert_eq!(after(2, 7), None);
+        // Of 8 passes 6 were there already: each of the two took 2 s.
+        let resumed = Convergence::new(Duration::from_secs(2), 6);
+        let after = |seconds| stop.reason(&resumed, 8, Duration::from_secs(seconds));
+        assert_eq!((after(7), after(8)), (None, Some(StoppedBy::Time)));
     }
 }

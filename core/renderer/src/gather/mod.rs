@@ -267,9 +267,11 @@ pub fn run<'a, E: Estimator>(
     let done = AtomicUsize::new(0);
     let tiles = film.tiles().len();
     let instructions = pulp::Arch::new();
-    let mut convergence = Convergence::new(progress.elapsed());
+    // Passes that are there already were made by an earlier render.
+    let first = film.passes().min(passes);
+    let mut convergence = Convergence::new(progress.elapsed(), first);
     let mut stopped_by = StoppedBy::Rays;
-    for pass in 0..passes {
+    for pass in first..passes {
         progress.set_passes(pass, passes);
         let half = pass as usize % SETS;
         let gatherer = &gatherers[half];
@@ -282,11 +284,11 @@ pub fn run<'a, E: Estimator>(
             counted.1 += costs;
             drop(counted);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            let share = done as f64 / (tiles * passes as usize) as f64;
+            let share = done as f64 / (tiles * (passes - first) as usize) as f64;
             progress.set_fraction(stop.fraction(share, progress.elapsed()));
             Ok(open)
         });
-        film.finish_pass(gatherer.rays_of_sample(sample).len() as u32, half);
+        film.finish_pass(gatherer.rays_of_sample(sample).len() as u32, half, finished.is_ok());
         if let Some(auditor) = gatherer.auditor {
             auditor.finish_pass(gatherer.rays_of_sample(sample).len() as u64);
         }

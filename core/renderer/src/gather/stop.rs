@@ -43,7 +43,7 @@ impl Stop {
         if error.zip(self.error_target).is_some_and(|(error, target)| error <= target) {
             return Some(StoppedBy::Error);
         }
-        let next = elapsed + (elapsed.saturating_sub(self.began)) / passes;
+        let next = elapsed + elapsed.saturating_sub(self.began) / (passes - convergence.first).max(1);
         self.time_limit.filter(|&limit| next > limit).map(|_| StoppedBy::Time)
     }
 
