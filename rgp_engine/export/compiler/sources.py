@@ -1,8 +1,9 @@
 """Nodes that look at the hit: textures, coordinates, geometry, attributes."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from ..ies import IesError, Web, web_of
 from ..nodes import Output
 from .images import texture_of, tiles_of, unassociates
 from .mapping import own_mapping
@@ -55,6 +56,22 @@ def _environment(c: "Compiler", source: Output) -> "Operand | None":
     interpolation = _INTERPOLATIONS[b_node.interpolation]
     fields = {"texture": texture, "extension": "repeat", "interpolation": interpolation}
     return c.emit("image", vector=place, unassociate=False, **fields)
+
+
+def _web(b_node: Any) -> Web | None:
+    try:
+        return web_of(b_node)
+    except IesError:
+        return None
+
+
+def _luminaire(c: "Compiler", source: Output) -> "Operand | None":
+    web = _web(source.b_node)
+    if web is None:
+        return None
+    vector = c.input(source, "Vector") if c.linked(source, "Vector") else c.quantity("object_incoming")
+    intensity = c.emit("photometric_web", vector=vector, web=web.record())
+    return c.math("MULTIPLY", c.input(source, "Strength"), intensity)
 
 
 def _uv(c: "Compiler") -> "Register":
@@ -223,6 +240,7 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
     "TEX_IMAGE": _image,
     "TEX_ENVIRONMENT": _environment,
     "TEX_SKY": sky_texture,
+    "TEX_IES": _luminaire,
     "UVMAP": _uv_map,
     "TEX_COORD": _texture_coordinate,
     "NEW_GEOMETRY": _geometry,
@@ -243,6 +261,7 @@ SOURCES: "dict[str, Callable[[Compiler, Output], bool]]" = {
         source.b_node.projection, texture_of(c, source.b_node), tiles_of(c, source.b_node)
     ),
     "TEX_ENVIRONMENT": lambda c, source: texture_of(c, source.b_node) is not None,
+    "TEX_IES": lambda _c, source: _web(source.b_node) is not None,
     "UVMAP": _known(_uv_map),
     "TEX_COORD": _known(_texture_coordinate),
     "NEW_GEOMETRY": _known(_geometry),
