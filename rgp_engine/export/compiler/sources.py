@@ -1,9 +1,9 @@
 """Nodes that look at the hit: textures, coordinates, geometry, attributes."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from ..ies import IesError, Web, web_of
+from ..ies import UNREADABLE, IesError, web_of
 from ..nodes import Output
 from .images import texture_of, tiles_of, unassociates
 from .mapping import own_mapping
@@ -58,20 +58,15 @@ def _environment(c: "Compiler", source: Output) -> "Operand | None":
     return c.emit("image", vector=place, unassociate=False, **fields)
 
 
-def _web(b_node: Any) -> Web | None:
-    try:
-        return web_of(b_node)
-    except IesError:
-        return None
-
-
 def _luminaire(c: "Compiler", source: Output) -> "Operand | None":
-    web = _web(source.b_node)
-    if web is None:
-        return None
+    strength = c.input(source, "Strength")
+    try:
+        web = web_of(source.b_node).record()
+    except IesError as error:
+        c.report_node(source.b_node, f"{error}; an intensity of {UNREADABLE:g} is used instead, as in Cycles")
+        return c.math("MULTIPLY", strength, UNREADABLE)
     vector = c.input(source, "Vector") if c.linked(source, "Vector") else c.quantity("object_incoming")
-    intensity = c.emit("photometric_web", vector=vector, web=web.record())
-    return c.math("MULTIPLY", c.input(source, "Strength"), intensity)
+    return c.math("MULTIPLY", strength, c.emit("photometric_web", vector=vector, web=web))
 
 
 def _uv(c: "Compiler") -> "Register":
@@ -256,12 +251,11 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
 """Instructions of the nodes that look at the hit."""
 
 SOURCES: "dict[str, Callable[[Compiler, Output], bool]]" = {
-    **dict.fromkeys(("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP", "TEX_SKY"), _always),
+    **dict.fromkeys(("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP", "TEX_SKY", "TEX_IES"), _always),
     "TEX_IMAGE": lambda c, source: _is_rendered(
         source.b_node.projection, texture_of(c, source.b_node), tiles_of(c, source.b_node)
     ),
     "TEX_ENVIRONMENT": lambda c, source: texture_of(c, source.b_node) is not None,
-    "TEX_IES": lambda _c, source: _web(source.b_node) is not None,
     "UVMAP": _known(_uv_map),
     "TEX_COORD": _known(_texture_coordinate),
     "NEW_GEOMETRY": _known(_geometry),
