@@ -105,7 +105,7 @@ def read(content: bytes) -> Web:
     header = words.numbers(13)
     counts = [_whole(header[i]) for i in (3, 4)]
     if min(counts) < 1 or math.prod(counts) > _MOST_INTENSITIES:
-        raise IesError(f"it has {counts[0]} vertical and {counts[1]} horizontal angles")
+        raise IesError(f"it has {counts[0]:g} vertical and {counts[1]:g} horizontal angles")
     vertical, horizontal = (_angles(words.numbers(count)) for count in counts)
     watts = np.array(words.numbers(math.prod(counts)))
     with np.errstate(over="ignore", invalid="ignore"):
