@@ -54,14 +54,13 @@ class Web(NamedTuple):
         return float(around @ corners @ along) / (4.0 * math.pi)
 
     def record(self) -> dict[str, list[float]]:
-        """The core's PhotometricWeb. What it takes beyond the edges are the choices of Cycles since Blender 5.2: past
+        """The core's PhotometricWeb. What it takes beyond the edges are the choices of Cycles since Blender 5.0: past
         the pole at -z the other side, past other vertical angles the last one again; past horizontal ones the lower end
         of the first and last interval, since 360 degrees as it rounds them are not seen to be a whole turn."""
-        second = min(1, len(self.vertical) - 1)
-        first = second if self.vertical[0] < 1e-7 else 0
-        rows = np.concatenate([self.intensity[:, [first]], self.intensity, self.intensity[:, -1:]], axis=1)
-        before_last = max(0, len(rows) - 2)
-        padded = np.concatenate([rows[:1], rows, rows[[before_last]]])
+        values, from_pole = self.intensity, self.vertical[0] < 1e-7
+        below = values[:, :2][:, -1:] if from_pole else values[:, :1]
+        rows = np.concatenate([below, values, values[:, -1:]], axis=1)
+        padded = np.concatenate([rows[:1], rows, rows[-2:][:1]])
         return {
             "horizontal": self.horizontal.tolist(),
             "vertical": self.vertical.tolist(),
