@@ -6,7 +6,10 @@ import bpy
 import numpy as np
 import pytest
 
+from rgp_engine.export.fold import Folder
 from rgp_engine.export.ies import IesError, read
+from rgp_engine.export.nodes import Input
+from rgp_engine.report import ProblemLog
 from tests.blender import build
 
 WATTS = 4.0 * math.pi / 177.83
@@ -204,3 +207,23 @@ def test_a_file_that_cannot_be_read_is_named_once(
     assert instruction(record, "math")["function"] == "MULTIPLY"
     used = "an intensity of 100 is used instead, as in Cycles"
     assert problems() == [f'Lamp: node "IES Texture": {why.format(path=path)}; {used}']
+
+
+@pytest.mark.parametrize(("content", "intensity"), [(GOOD, None), (b"hello", 100.0)])
+def test_one_value_stands_for_it_where_one_is_asked_for(scene, content, intensity):
+    b_light = bpy.data.lights.new("Spot", "SPOT")
+    b_tree = build.shader_tree(b_light)
+    b_emission, b_node, b_output = (
+        b_tree.nodes.new(f"ShaderNode{kind}") for kind in ("Emission", "TexIES", "OutputLight")
+    )
+    b_node.inputs["Strength"].default_value = 2.0
+    b_node.ies = bpy.data.texts.new("Luminaire")
+    b_node.ies.write(content.decode())
+    build.connect(b_tree, b_node, b_emission, "Strength")
+    build.connect(b_tree, b_emission, b_output, "Surface")
+    log = ProblemLog()
+    value = Folder("Spot", log).constant_value(Input(b_emission.inputs["Strength"], ()))
+    assert value == pytest.approx(2.0 * (read(content).mean if intensity is None else intensity))
+    message = log.problems[0].message
+    assert message.startswith('node "IES Texture": ')
+    assert ("only its average" in message) == (intensity is None)

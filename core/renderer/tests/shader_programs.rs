@@ -110,8 +110,8 @@ fn any_instruction(kind: usize, r: [u16; 10], x: [f32; 4]) -> Instruction {
         }
         21 => {
             let [horizontal, vertical] = [r[1], r[2]].map(|count| vec![x[0]; count as usize % 4]);
-            let web = json!({"horizontal": horizontal, "vertical": vertical, "intensity": vec![x[1]; 9]});
-            json!({"op": "photometric_web", "vector": r[0], "web": web})
+            let web = PhotometricWeb { horizontal, vertical, intensity: vec![x[1]; 9] };
+            return Instruction::PhotometricWeb { vector: r[0], web: Box::new(web) };
         }
         _ => return Instruction::Constant { value: x },
     };
