@@ -53,7 +53,15 @@ def _saved(content: str) -> str:
 
 def _around(b_tree: Any) -> Any:
     """Nearly half of all directions, below the horizon and above it."""
-    turned = {"Location": (0.05, 0.1, -0.2), "Rotation": (0.5, 0.7, 0.3)}
+    return _directions(b_tree, Location=(0.05, 0.1, -0.2), Rotation=(0.5, 0.7, 0.3))
+
+
+def _below(b_tree: Any) -> Any:
+    """Directions all around the one straight down."""
+    return _directions(b_tree, Location=(0.05, 0.1, -0.8))
+
+
+def _directions(b_tree: Any, **turned: Any) -> Any:
     b_mapping = build.node(b_tree, "ShaderNodeMapping", **turned)
     b_tree.links.new(b_tree.nodes.new("ShaderNodeTexCoord").outputs["Object"], b_mapping.inputs["Vector"])
     return b_mapping.outputs[0]
@@ -108,6 +116,7 @@ def _cases() -> Iterator[tuple[str, NodeCase]]:
                 case = NodeCase(luminaire(content, _around), EDGES)
                 yield f"type {letter}, {name}, {name_v}", case
     whole = ies_text((0, 45, 90, 180, 200, 300, 360))
+    yield "type C, straight down", NodeCase(luminaire(whole, _below))
     yield "Strength", NodeCase(luminaire(whole, _around, strength=0.3))
     yield "tilt", NodeCase(luminaire(ies_text((0, 90), tilt="INCLUDE\n1\n2\n0 180\n1 0.5"), _around))
     yield "file", NodeCase(_file)
