@@ -58,7 +58,7 @@ def _around(b_tree: Any) -> Any:
 
 def _below(b_tree: Any) -> Any:
     """Directions all around the one straight down."""
-    return _directions(b_tree, Location=(0.05, 0.1, -0.8))
+    return _directions(b_tree, Location=(0.05, 0.1, -0.4))
 
 
 def _directions(b_tree: Any, **turned: Any) -> Any:
@@ -116,7 +116,8 @@ def _cases() -> Iterator[tuple[str, NodeCase]]:
                 case = NodeCase(luminaire(content, _around), EDGES)
                 yield f"type {letter}, {name}, {name_v}", case
     whole = ies_text((0, 45, 90, 180, 200, 300, 360))
-    yield "type C, straight down", NodeCase(luminaire(whole, _below))
+    coarse = ies_text((0, 90, 180, 270, 360), (0, 60, 120, 180))
+    yield "type C, straight down", NodeCase(luminaire(coarse, _below, strength=9.0))
     yield "Strength", NodeCase(luminaire(whole, _around, strength=0.3))
     yield "tilt", NodeCase(luminaire(ies_text((0, 90), tilt="INCLUDE\n1\n2\n0 180\n1 0.5"), _around))
     yield "file", NodeCase(_file)
