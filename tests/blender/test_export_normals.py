@@ -50,3 +50,21 @@ def test_bump_map_correction_that_is_off_is_reported(scene, exported, problems):
     build.connect(b_tree, b_shader, b_output, "Surface")
     exported(b_material)
     assert "Material: Bump Map Correction cannot be switched off" in problems()
+
+
+@pytest.mark.parametrize(("socket", "exported_width"), [(0.25, 0.25), (-5.0, 1e-3), (1e9, 1e3)])
+def test_the_slope_of_a_bump_is_taken_over_its_filter_width(scene, exported, socket, exported_width):
+    b_material, b_tree, b_output = build.material()
+    b_shader, b_bump = b_tree.nodes.new("ShaderNodeBsdfDiffuse"), b_tree.nodes.new("ShaderNodeBump")
+    if "Filter Width" not in b_bump.inputs:
+        pytest.skip("Blender 4.2 has no Filter Width")
+    b_bump.inputs["Filter Width"].default_value = socket
+    build.connect(b_tree, b_tree.nodes.new("ShaderNodeTexNoise"), b_bump, "Height")
+    build.connect(b_tree, b_bump, b_shader, "Normal")
+    build.connect(b_tree, b_shader, b_output, "Surface")
+    instructions = exported(b_material)["program"]["instructions"]
+    (bump,) = (step for step in instructions if step["op"] == "bump")
+    assert bump["filter_width"] == pytest.approx(exported_width)
+    places = [step["aside"] for step in instructions if any(step.get("aside", ()))]
+    width = bump["filter_width"]
+    assert [tuple(place) for place in places] == [(width, 0.0), (0.0, width)]

@@ -144,7 +144,7 @@ def test_texture_coordinates_that_are_not_numbers(check, value):
     texture = scene.builder.add_texture("White", np.full((4, 4, 4), 255, np.uint8), "linear")
     program = {
         "instructions": [
-            {"op": "attribute", "attribute": 0, "aside": "here"},
+            {"op": "attribute", "attribute": 0, "aside": [0.0, 0.0]},
             {
                 "op": "image",
                 "texture": texture,

@@ -66,16 +66,23 @@ impl Anywhere {
     }
 }
 
+impl Anywhere {
+    fn answer(&self, number: usize, Aside([x, y]): Aside) -> Value {
+        let place = usize::from(x > 0.0) + 2 * usize::from(y > 0.0);
+        self.answers[(number + place) % self.answers.len()]
+    }
+}
+
 impl Point for Anywhere {
     fn attribute(&self, attribute: u32, aside: Aside) -> Value {
-        self.answers[(attribute as usize + aside as usize) % self.answers.len()]
+        self.answer(attribute as usize, aside)
     }
 
     fn geometry(&self, quantity: Quantity, aside: Aside) -> Value {
-        self.answers[(quantity as usize + aside as usize) % self.answers.len()]
+        self.answer(quantity as usize, aside)
     }
 
-    fn steps(&self) -> [Vec3; 2] {
+    fn steps(&self, _widths: f32) -> [Vec3; 2] {
         self.steps
     }
 

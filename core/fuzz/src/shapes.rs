@@ -3,7 +3,7 @@
 use rgp_renderer::scene::Projection;
 use rgp_renderer::scene::record::Input;
 use rgp_renderer::shader::{
-    Aside, BlendMode, CellHash, Extension, Feature, Fractal, GradientShape, Interpolation, MathFunction,
+    BlendMode, CellHash, Extension, Feature, Fractal, GradientShape, Interpolation, MathFunction,
     Metric, NormalSpace, Projection as PanoramaProjection, Quantity, VectorFunction, VoronoiOutput,
     WaveDirection, WaveProfile,
 };
@@ -17,7 +17,7 @@ use crate::records::{Fields, Kind, words};
 const EXTENSION: (&str, Kind) = ("extension", Word(words::<Extension>));
 const INTERPOLATION: (&str, Kind) = ("interpolation", Word(words::<Interpolation>));
 const UNASSOCIATE: (&str, Kind) = ("unassociate", Flag);
-const ASIDE: (&str, Kind) = ("aside", Word(words::<Aside>));
+const ASIDE: (&str, Kind) = ("aside", Numbers(2));
 const DIMENSIONS: (&str, Kind) = ("dimensions", Below(6));
 
 const PATTERN: Kind = One(
@@ -148,6 +148,7 @@ pub const INSTRUCTIONS: &[(&str, Fields)] = &[
             ("height_y", Register),
             ("normal", Register),
             ("invert", Flag),
+            ("filter_width", Number),
         ],
     ),
     ("checker", &[("vector", Register), ("color1", Register), ("color2", Register), ("scale", Register)]),

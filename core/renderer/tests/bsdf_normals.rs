@@ -44,6 +44,32 @@ fn smooth_mirrors_and_glass_lose_no_light() {
     }
 }
 
+/// It leans less, and in the same direction: what is mirrored is as high above the surface as it must be.
+#[test]
+fn a_normal_that_mirrors_below_is_turned_towards_the_geometric_one() {
+    let material = prepared(glass(1.0, 0.0, 1.45));
+    for (wo, height) in [
+        (Vec3::new(-0.9, 0.4, 0.2), 0.01),
+        (Vec3::new(-0.1, 0.99, 0.3), 0.01),
+        (Vec3::new(0.3, -0.95, 0.05), 0.01),
+        (Vec3::new(-0.8, 0.6, 0.005), 0.0045),
+    ] {
+        let wo = wo.normalize();
+        for lean in [0.5_f32, 0.95, 0.99] {
+            let given = Vec3::new(lean, 0.0, (1.0 - lean * lean).sqrt());
+            let ns = material.bsdf(wo, Vec3::Z, given).frame.ns;
+            let mirrored = 2.0 * wo.dot(given) * given - wo;
+            if mirrored.z >= height {
+                assert_eq!(ns, given);
+                continue;
+            }
+            let mirrored = 2.0 * wo.dot(ns) * ns - wo;
+            assert!((mirrored.z - height).abs() < 1e-4, "{wo}, {lean}: height {}", mirrored.z);
+            assert!(ns.y.abs() < 1e-6 && ns.z > given.z, "{wo}, {lean}: {ns}");
+        }
+    }
+}
+
 #[test]
 fn what_mirrors_above_keeps_its_normal() {
     let material = prepared(glossy(1.0, 0.0));

@@ -28,7 +28,7 @@ fn panorama(lamps: Vec<Lamp>, interpolation: Interpolation, texel: impl Fn(usize
         .expect("as many texels as it says");
     scene.textures = vec![texture].into();
     let instructions = vec![
-        Instruction::Geometry { quantity: Quantity::Position, aside: Aside::Here },
+        Instruction::Geometry { quantity: Quantity::Position, aside: Aside::HERE },
         Instruction::Panorama { vector: 0, projection: Projection::Equirectangular },
         Instruction::Image {
             texture: 0,

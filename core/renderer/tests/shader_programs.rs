@@ -22,7 +22,7 @@ impl Point for Anywhere {
         Value { v: self.0, width: self.0.w }
     }
 
-    fn steps(&self) -> [Vec3; 2] {
+    fn steps(&self, _widths: f32) -> [Vec3; 2] {
         [Vec3::X * self.0.x, Vec3::Y]
     }
 
@@ -77,7 +77,7 @@ fn any_instruction(kind: usize, r: [u16; 10], x: [f32; 4]) -> Instruction {
     ];
     let (pattern, inputs) = &patterns[r[9] as usize % patterns.len()];
     let record = match kind {
-        0 => json!({"op": "attribute", "attribute": r[0], "aside": "x"}),
+        0 => json!({"op": "attribute", "attribute": r[0], "aside": [0.1, 0.0]}),
         1 => json!({"op": "mapping", "vector": r[0], "location": r[1], "rotation": r[2], "scale": r[3]}),
         2 => image("image", json!({})),
         3 => image("box_image", json!({"normal": r[2], "blend": 0.3})),
@@ -94,7 +94,8 @@ fn any_instruction(kind: usize, r: [u16; 10], x: [f32; 4]) -> Instruction {
         }
         11 => json!({"op": "hue_saturation", "color": r[0], "hue": r[1], "saturation": r[2], "value": r[3]}),
         12 => json!({"op": "bump", "strength": r[0], "distance": r[1], "height": r[2], "height_x": r[3],
-            "height_y": r[4], "normal": r[5], "invert": true}),
+            "height_y": r[4], "normal": r[5], "invert": true,
+            "filter_width": 0.1}),
         13 => json!({"op": "layer_weight", "blend": r[0], "normal": r[1], "facing": r[2] > 2}),
         14 => json!({"op": "checker", "vector": r[0], "color1": r[1], "color2": r[2], "scale": r[3]}),
         15 => json!({"op": "hsv_from_rgb", "color": r[0]}),
@@ -216,7 +217,7 @@ fn each_square_of_the_plane_has_its_own_tile() {
 #[test]
 fn widths_follow_the_arithmetic() {
     let texel = |x: f32| Instruction::Constant { value: [x; 4] };
-    let step = Instruction::Attribute { attribute: 0, aside: Aside::Here };
+    let step = Instruction::Attribute { attribute: 0, aside: Aside::HERE };
     let rows = [[4.0, 0.0, 0.0, 0.0], [0.0, 4.0, 0.0, 0.0], [0.0, 0.0, 4.0, 0.0]];
     let program = vec![
         step,
@@ -248,7 +249,7 @@ impl Point for Floor {
         }
     }
 
-    fn steps(&self) -> [Vec3; 2] {
+    fn steps(&self, _widths: f32) -> [Vec3; 2] {
         [Vec3::X, Vec3::Y]
     }
 
@@ -265,7 +266,7 @@ impl Point for Floor {
 #[test]
 fn a_bump_is_the_same_surface_from_both_sides() {
     let number = |x: f32| Instruction::Constant { value: [x; 4] };
-    let normal = Instruction::Geometry { quantity: Quantity::Normal, aside: Aside::Here };
+    let normal = Instruction::Geometry { quantity: Quantity::Normal, aside: Aside::HERE };
     let bump = |invert| Instruction::Bump {
         strength: 1,
         distance: 1,
@@ -274,6 +275,7 @@ fn a_bump_is_the_same_surface_from_both_sides() {
         height_y: 0,
         normal: 2,
         invert,
+        filter_width: 1.0,
     };
     for (invert, slope) in [(false, 1.0), (true, -1.0)] {
         let instructions = vec![number(0.0), number(1.0), normal.clone(), bump(invert)];

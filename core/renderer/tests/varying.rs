@@ -92,7 +92,7 @@ fn texture_program(
     let extension = Extension::Repeat;
     Some(ProgramRecord {
         instructions: vec![
-            Instruction::Attribute { attribute: 3, aside: Aside::Here },
+            Instruction::Attribute { attribute: 3, aside: Aside::HERE },
             Instruction::Image { texture, vector: 0, extension, interpolation, unassociate: false },
         ],
         outputs: vec![OutputRecord { closure: 0, input, register: 1 }],
@@ -159,7 +159,7 @@ fn the_length_of_a_normal_does_not_matter() {
         let mut record = diffuse(0.5);
         record.program = Some(ProgramRecord {
             instructions: vec![
-                Instruction::Geometry { quantity: Quantity::Normal, aside: Aside::Here },
+                Instruction::Geometry { quantity: Quantity::Normal, aside: Aside::HERE },
                 Instruction::Constant { value: [length; 4] },
                 Instruction::VectorMath { function: VectorFunction::Scale, a: 0, b: 0, c: 1 },
             ],
@@ -242,7 +242,7 @@ fn a_panel_of_constant_emission_beside_an_uneven_sky() {
         place(&mut builder, floor(0.5, 0.3), &[panel]);
         place(&mut builder, floor(1.0, 0.0), &[diffuse(0.5)]);
         let instructions = vec![
-            Instruction::Geometry { quantity: Quantity::Position, aside: Aside::Here },
+            Instruction::Geometry { quantity: Quantity::Position, aside: Aside::HERE },
             Instruction::VectorMath { function: VectorFunction::Absolute, a: 0, b: 0, c: 0 },
         ];
         let program = Some(WorldProgramRecord { instructions, radiance: 1 });
@@ -276,4 +276,53 @@ fn a_texture_far_from_the_camera_is_seen_at_the_width_of_a_pixel() {
     settings.gather.camera_samples = 1;
     let radiance = finish_and_render(builder, &settings).radiance();
     assert!(spread(&radiance, 0.5) < 0.08, "pixels differ by {}", spread(&radiance, 0.5));
+}
+
+/// Taken over a step e, the slope of x² is 2x ± e, and the mean of its normal's x component between -1/2 and 1/2 is half the
+/// difference of two square roots.
+#[test]
+fn the_slope_of_a_bump_is_taken_over_its_filter_width() {
+    for filter_width in [0.1, 4.0] {
+        let mut record = material(&[ClosureRecord::Emission { radiance: Rgb::WHITE }]);
+        let position = |aside| Instruction::Geometry { quantity: Quantity::Position, aside: Aside(aside) };
+        let squared = |a| Instruction::VectorMath { function: VectorFunction::Multiply, a, b: a, c: a };
+        let x = |of| Instruction::Channel { of, channel: 0 };
+        let instructions = vec![
+            position([0.0; 2]),
+            position([filter_width, 0.0]),
+            position([0.0, filter_width]),
+            squared(0),
+            squared(1),
+            squared(2),
+            x(3),
+            x(4),
+            x(5),
+            Instruction::Geometry { quantity: Quantity::Normal, aside: Aside::HERE },
+            Instruction::Constant { value: [1.0; 4] },
+            Instruction::Bump {
+                strength: 10,
+                distance: 10,
+                height: 6,
+                height_x: 7,
+                height_y: 8,
+                normal: 9,
+                invert: false,
+                filter_width,
+            },
+            Instruction::VectorMath { function: VectorFunction::Add, a: 11, b: 10, c: 10 },
+            x(12),
+        ];
+        let output = OutputRecord { closure: 0, input: Input::Radiance, register: 13 };
+        record.program =
+            Some(ProgramRecord { instructions, outputs: vec![output], normal: None, normals: Vec::new() });
+        let mut builder = SceneBuilder::default();
+        place(&mut builder, floor(1.0, 0.0), &[record]);
+        builder.set_camera(parallel_camera(DVec3::Z, DVec3::ZERO, 0.5, 16));
+        let mut settings = settings(1000, 16, 16);
+        settings.gather.camera_samples = 64;
+        let found = mean(&finish_and_render(builder, &settings).radiance()) - 1.0;
+        let e = f64::from(filter_width) / 16.0 / 8.0;
+        let expected = (1.0_f64.hypot(1.0 + e) - 1.0_f64.hypot(1.0 - e)) / 2.0;
+        assert!((found.abs() - expected).abs() < 0.05 * expected + 5e-4, "{found}, not ±{expected}");
+    }
 }

@@ -46,8 +46,9 @@ class Compiler(Folder):
         """Layers of the mesh that the program reads."""
         self.asks_object = False
         """True when the program asks about the object."""
-        self.aside = "here"
-        """Where on the surface things are asked for, while the slope of a bump is compiled."""
+        self.aside = (0.0, 0.0)
+        """Where on the surface things are asked for, while the slope of a bump is compiled: widths of the ray along two
+        tangents."""
         self.normal: Register | None = None
         """The register that is the shading normal of what has none of its own."""
         self.normals: list[dict[str, Any]] = []

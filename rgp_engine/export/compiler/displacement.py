@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from ..nodes import Input, Output, origin
-from .sources import heights
+from .sources import FILTER_WIDTH, heights
 
 if TYPE_CHECKING:
     from .compiler import Compiler
@@ -25,7 +25,7 @@ def displace(c: "Compiler", entry: Input) -> bool:
         distance=c.input(source, "Scale"),
         normal=c.quantity("normal"),
         invert=False,
-        **heights(c, source),
+        **heights(c, source, FILTER_WIDTH),
     )
     c.normal = bump
     return True

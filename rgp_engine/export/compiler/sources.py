@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from ..arithmetic import clamp
 from ..ies import UNREADABLE, IesError, web_of
 from ..nodes import Output
 from .images import texture_of, tiles_of, unassociates
@@ -15,6 +16,10 @@ if TYPE_CHECKING:
 
 _EXTENSIONS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
 _INTERPOLATIONS = {"Linear": "linear", "Closest": "closest", "Cubic": "cubic", "Smart": "cubic"}
+FILTER_WIDTH = 0.1
+"""Widths of the ray over which slopes are taken where no Bump node says it, as in Blender 4.2."""
+_FILTER_WIDTHS = (1e-3, 1e3)
+"""Least and most that are kept of what one says."""
 
 
 def _image(c: "Compiler", source: Output) -> "Operand | None":
@@ -200,11 +205,13 @@ def _normal_map(c: "Compiler", source: Output) -> "Operand | None":
     )
 
 
-def heights(c: "Compiler", source: Output) -> "dict[str, Register]":
-    """The height of a node that tilts the normal: at the hit, and one step aside along two tangents."""
+def heights(c: "Compiler", source: Output, filter_width: float) -> "dict[str, Register | float]":
+    """The height of a node that tilts the normal: at the hit, and `filter_width` widths of the ray aside along two
+    tangents."""
     here = c.aside
-    found = {}
-    for name, aside in (("height", "here"), ("height_x", "x"), ("height_y", "y")):
+    found: dict[str, Register | float] = {"filter_width": filter_width}
+    places = {"height": (0.0, 0.0), "height_x": (filter_width, 0.0), "height_y": (0.0, filter_width)}
+    for name, aside in places.items():
         c.aside = aside
         found[name] = c.input(source, "Height")
     c.aside = here
@@ -212,13 +219,16 @@ def heights(c: "Compiler", source: Output) -> "dict[str, Register]":
 
 
 def _bump(c: "Compiler", source: Output) -> "Operand | None":
+    entry = source.find("Filter Width")
+    # A link to it means nothing to Cycles either.
+    filter_width = FILTER_WIDTH if entry is None else clamp(entry.b_socket.default_value, *_FILTER_WIDTHS)
     return c.emit(
         "bump",
         strength=c.input(source, "Strength"),
         distance=c.input(source, "Distance"),
         normal=_normal(c, source),
         invert=bool(source.b_node.invert),
-        **heights(c, source),
+        **heights(c, source, filter_width),
     )
 
 

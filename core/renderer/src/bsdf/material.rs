@@ -355,10 +355,8 @@ impl<'a> MaterialRef<'a> {
         let material: &PreparedMaterial = &self;
         let mut frame = ShadingFrame::new(wo, ng, ns);
         if !material.is_plain() {
-            frame = frame.bent_below(wo);
-            if !material.is_in_part_diffuse() {
-                frame = frame.mirroring_above(wo);
-            }
+            frame =
+                if material.is_in_part_diffuse() { frame.bent_below(wo) } else { frame.mirroring_above(wo) };
         }
         let cos = wo.dot(frame.ns).clamp(0.0, 1.0);
         let (mut emission, transparency) = (material.bare_emission, material.straight);

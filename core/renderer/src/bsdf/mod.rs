@@ -38,7 +38,7 @@ mod varying;
 use std::ops::{BitOr, Deref};
 use std::sync::Arc;
 
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use smallvec::SmallVec;
 
 use crate::color::Rgb;
@@ -157,20 +157,24 @@ impl ShadingFrame {
         Self { ns: (self.ns + wo * (least - cos)).normalize(), ..self }
     }
 
-    /// The frame with a shading normal that mirrors `wo` to above the surface: half-way to the mirrored direction, which is
-    /// lifted along the geometric normal (Keller et al. 2017, *The Iray Light Transport Simulation and Rendering System*,
-    /// appendix A.3). Without it, smooth mirrors and glass are black where they are seen at a slant.
+    /// The frame with a shading normal that mirrors `wo` to above the surface: turned towards the geometric one until it does,
+    /// as in Cycles. Without it, smooth mirrors and glass are black where they are seen at a slant.
+    ///
+    /// With `wo` at an angle φ from the geometric normal in the plane of both normals, where its length is ρ, a normal at an
+    /// angle θ mirrors it to the height ρ cos(2θ - φ).
     #[must_use]
     fn mirroring_above(self, wo: Vec3) -> Self {
         const LEAST: f32 = 0.01;
-        let mirrored = 2.0 * wo.dot(self.ns) * self.ns - wo;
-        let least = LEAST.min(0.9 * wo.dot(self.ng));
-        let cos = mirrored.dot(self.ng);
-        if cos >= least {
+        let (cos, cos_g) = (wo.dot(self.ns), wo.dot(self.ng));
+        let least = LEAST.min(0.9 * cos_g);
+        if 2.0 * cos * self.ns.dot(self.ng) - cos_g >= least {
             return self;
         }
-        let lifted = (mirrored + (least - cos) * self.ng).normalize_or(self.ng);
-        Self { ns: (wo + lifted).normalize_or(self.ng), ..self }
+        let across = self.ns.reject_from_normalized(self.ng).normalize_or_zero();
+        let in_plane = Vec2::new(cos_g, wo.dot(across));
+        let theta = 0.5 * (in_plane.to_angle() + (least / in_plane.length()).clamp(-1.0, 1.0).acos());
+        let ns = (self.ng * theta.cos() + across * theta.sin()).normalize_or(self.ng);
+        Self { ns, ..self }
     }
 
     /// Flux of a photon from `wo` times this is what to store for an irradiance that belongs to the shading normal, as

@@ -139,9 +139,9 @@ impl Normals {
         self.vectors[usize::from(normal) - 1]
     }
 
-    /// The frame about a normal, which is bent so that `wo` is above it.
+    /// The frame about a normal.
     fn frame(&self, normal: u8, wo: Vec3, frame: &ShadingFrame) -> ShadingFrame {
-        ShadingFrame::new(wo, frame.unturned()[0], self.vector(normal)).bent_below(wo)
+        ShadingFrame::new(wo, frame.unturned()[0], self.vector(normal))
     }
 
     /// Cosines of the viewer to the normals of a closure.
@@ -149,7 +149,11 @@ impl Normals {
         let cos = |frame: ShadingFrame| wo.dot(frame.ns).clamp(0.0, 1.0);
         let [base, coat, sheen] =
             [layers.base, layers.coat, layers.sheen].map(|normal| self.frame(normal, wo, frame));
-        Layers { base: cos(base.mirroring_above(wo)), coat: cos(coat.mirroring_above(wo)), sheen: cos(sheen) }
+        Layers {
+            base: cos(base.mirroring_above(wo)),
+            coat: cos(coat.mirroring_above(wo)),
+            sheen: cos(sheen.bent_below(wo)),
+        }
     }
 
     /// Share of light from `wi` that arrives at a diffuse lobe about the normal `ns`, see the module.
@@ -169,15 +173,15 @@ impl Bsdf<'_> {
     /// are bent for themselves alone.
     pub(super) fn own_frame(&self, lobe: &Lobe) -> ShadingFrame {
         let normals = self.material.normals();
-        let bent = || normals.frame(lobe.normal, self.wo, &self.frame);
+        let own = || normals.frame(lobe.normal, self.wo, &self.frame);
         match lobe.shape {
             Shape::Lambert | Shape::Translucent => {
                 let outward = normals.vector(lobe.normal);
                 let ns = if self.frame.entering { outward } else { -outward };
                 ShadingFrame { ns, ..self.frame }
             }
-            Shape::Sheen(_) => bent(),
-            Shape::Reflection { .. } | Shape::Transmission { .. } => bent().mirroring_above(self.wo),
+            Shape::Sheen(_) => own().bent_below(self.wo),
+            Shape::Reflection { .. } | Shape::Transmission { .. } => own().mirroring_above(self.wo),
         }
     }
 

@@ -194,7 +194,7 @@ impl Point for Sight {
         }
     }
 
-    fn steps(&self) -> [Vec3; 2] {
+    fn steps(&self, _widths: f32) -> [Vec3; 2] {
         [Vec3::ZERO; 2]
     }
 

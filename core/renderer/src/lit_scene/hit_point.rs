@@ -51,19 +51,16 @@ impl<'a> HitPoint<'a> {
         if self.back { -normal } else { normal }
     }
 
-    /// Steps along the surface (scene units), as long as the ray is wide.
-    fn scene_steps(&self) -> [Vec3; 2] {
+    /// The way to a place aside (scene units), along the surface.
+    fn step(&self, Aside(widths): Aside) -> Vec3 {
+        let length = |widths: f32| if widths > 0.0 { (self.width * widths).max(LEAST_STEP) } else { 0.0 };
         let frame = Frame::new(self.ng);
-        let length = self.width.max(LEAST_STEP);
-        [frame.tangent * length, frame.bitangent * length]
+        frame.tangent * length(widths[0]) + frame.bitangent * length(widths[1])
     }
 
-    fn step(&self, aside: Aside) -> Vec3 {
-        match aside {
-            Aside::Here => Vec3::ZERO,
-            Aside::X => self.scene_steps()[0],
-            Aside::Y => self.scene_steps()[1],
-        }
+    /// The ways to the two places so many widths aside (scene units).
+    fn scene_steps(&self, widths: f32) -> [Vec3; 2] {
+        [Aside([widths, 0.0]), Aside([0.0, widths])].map(|aside| self.step(aside))
     }
 
     /// How the barycentric weights change along a vector in the plane of the triangle.
@@ -114,11 +111,11 @@ impl Point for HitPoint<'_> {
         let (along_b, along_c) = (b - a, c - a);
         let [mut u, mut v] = self.barycentric;
         let edges = self.edges();
-        if aside != Aside::Here {
+        if aside != Aside::HERE {
             let [du, dv] = self.barycentric_change(edges, self.step(aside));
             (u, v) = (u + du, v + dv);
         }
-        let changes = self.scene_steps().map(|step| {
+        let changes = self.scene_steps(1.0).map(|step| {
             let [du, dv] = self.barycentric_change(edges, step);
             (along_b * du + along_c * dv).truncate().length_squared()
         });
@@ -172,8 +169,8 @@ impl Point for HitPoint<'_> {
         }
     }
 
-    fn steps(&self) -> [Vec3; 2] {
-        self.scene_steps().map(|step| step * self.metres())
+    fn steps(&self, widths: f32) -> [Vec3; 2] {
+        self.scene_steps(widths).map(|step| step * self.metres())
     }
 
     fn tangents(&self, attribute: u32) -> Option<[Vec3; 3]> {

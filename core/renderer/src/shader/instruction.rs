@@ -15,18 +15,17 @@ pub type Register = u16;
 /// Most instructions of a program.
 pub const MOST_INSTRUCTIONS: usize = 4096;
 
-/// Where on the surface a quantity is asked for: at the point itself, or one step of the ray's footprint aside, along one or
-/// the other tangent. Bumps are differences between the three.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Aside {
-    /// At the point.
-    #[default]
-    Here,
-    /// One step along the first tangent.
-    X,
-    /// One step along the second tangent.
-    Y,
+/// Furthest aside, in widths of the ray.
+const MOST_WIDTHS: f32 = 1e3;
+
+/// Where on the surface a quantity is asked for: so many widths of the ray away from the point, along one and the other
+/// tangent. Bumps are differences between three such places.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+pub struct Aside(pub [f32; 2]);
+
+impl Aside {
+    /// At the point itself.
+    pub const HERE: Self = Self([0.0; 2]);
 }
 
 /// A texture and the unit square of the plane that it fills.
@@ -194,7 +193,7 @@ pub enum Instruction {
     Tangent { generated: Register },
     /// A normal from the color of a normal map; `attribute` is the UV map of a tangent space.
     NormalMap { color: Register, strength: Register, space: NormalSpace, attribute: u32 },
-    /// A normal tilted by a height (m) that is known here and one step aside.
+    /// A normal tilted by a height (m) that is known here and `filter_width` widths of the ray aside.
     Bump {
         strength: Register,
         distance: Register,
@@ -203,6 +202,7 @@ pub enum Instruction {
         height_y: Register,
         normal: Register,
         invert: bool,
+        filter_width: f32,
     },
     /// Two colors in turn; the result's alpha is the factor.
     Checker { vector: Register, color1: Register, color2: Register, scale: Register },
@@ -265,6 +265,14 @@ impl Instruction {
             return Some(format!("instruction {index} reads register {register}, which is not known yet"));
         }
         match *self {
+            Self::Attribute { aside: Aside(widths), .. } | Self::Geometry { aside: Aside(widths), .. }
+                if !widths.iter().all(|width| (0.0..=MOST_WIDTHS).contains(width)) =>
+            {
+                Some(format!("instruction {index} is {widths:?} widths aside"))
+            }
+            Self::Bump { filter_width, .. } if !(0.0..=MOST_WIDTHS).contains(&filter_width) => {
+                Some(format!("instruction {index} has a filter width of {filter_width}"))
+            }
             Self::Image { texture, .. } | Self::BoxImage { texture, .. } if texture as usize >= textures => {
                 Some(format!("instruction {index} reads texture {texture} of {textures}"))
             }

@@ -74,8 +74,8 @@ pub trait Point {
     /// Something about the point.
     fn geometry(&self, quantity: Quantity, aside: Aside) -> Value;
 
-    /// The vectors of one step aside (m), see [`Aside`].
-    fn steps(&self) -> [glam::Vec3; 2];
+    /// The vectors to the two places so many widths of the ray aside (m), see [`Aside`].
+    fn steps(&self, widths: f32) -> [glam::Vec3; 2];
 
     /// Unit vectors along u and v of a UV map, and the shading normal as modelled, in the object's space; `None` where the map
     /// has no direction.

@@ -215,10 +215,20 @@ fn at_surface(instruction: &Instruction, r: &Operands<'_>, point: &impl Point) -
         Instruction::NormalMap { color, strength, space, attribute } => {
             Value::vector(surface::normal_map(point, r.vector(color), r.number(strength), space, attribute))
         }
-        Instruction::Bump { strength, distance, height, height_x, height_y, normal, invert } => {
+        Instruction::Bump {
+            strength,
+            distance,
+            height,
+            height_x,
+            height_y,
+            normal,
+            invert,
+            filter_width,
+        } => {
             let heights = BumpHeights {
                 here: r.number(height),
                 aside: [r.number(height_x), r.number(height_y)],
+                filter_width,
                 distance: if invert { -r.number(distance) } else { r.number(distance) },
             };
             Value::vector(surface::bump(point, &heights, r.number(strength), r.vector(normal)))

@@ -9,25 +9,26 @@ use super::instruction::{Aside, NormalSpace, Quantity};
 pub(super) struct BumpHeights {
     /// Height at the point.
     pub(super) here: f32,
-    /// Height one step aside.
+    /// Height `filter_width` widths of the ray aside.
     pub(super) aside: [f32; 2],
+    pub(super) filter_width: f32,
     /// Metres per unit of height.
     pub(super) distance: f32,
 }
 
 fn ask(point: &impl Point, quantity: Quantity) -> Vec3 {
-    point.geometry(quantity, Aside::Here).v.truncate()
+    point.geometry(quantity, Aside::HERE).v.truncate()
 }
 
 /// True where the viewer is not on the modelled side.
 fn is_back(point: &impl Point) -> bool {
-    point.geometry(Quantity::Backfacing, Aside::Here).v.x > 0.0
+    point.geometry(Quantity::Backfacing, Aside::HERE).v.x > 0.0
 }
 
 /// The normal tilted by the slope of the height: Mikkelsen 2010, "Bump Mapping Unparametrized Surfaces on the GPU". Heights
 /// rise to the modelled side: seen from behind, hills are hollows.
 pub(super) fn bump(point: &impl Point, heights: &BumpHeights, strength: f32, normal: Vec3) -> Vec3 {
-    let [x, y] = point.steps();
+    let [x, y] = point.steps(heights.filter_width);
     let (of_x, of_y) = (y.cross(normal), normal.cross(x));
     let determinant = x.dot(of_x);
     let slope = of_x * (heights.aside[0] - heights.here) + of_y * (heights.aside[1] - heights.here);
