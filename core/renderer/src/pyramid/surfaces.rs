@@ -217,7 +217,7 @@ impl<'a> Surfaces<'a> {
     pub(super) fn measure(lit: &'a LitLayout<'_>, scene: &impl Surroundings) -> Option<Self> {
         let layout = &lit.layout;
         let none = |level: &Vec<bool>| level.par_iter().map(|_| OpenSum::default()).collect();
-        let mut sums: Vec<Vec<OpenSum>> = lit.is_lit.iter().map(none).collect();
+        let mut sums: Vec<Vec<OpenSum>> = lit.finer_matter.iter().map(none).collect();
         measure(lit, scene, &sums)?;
         for (level, sums) in sums.iter().enumerate() {
             find_divided(layout, level, sums, scene);
