@@ -3,7 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from .arithmetic import Color, scale
+from .arithmetic import Color, product, scale
+from .ies import UNREADABLE, IesError, web_of
 from .image import average
 
 MISSING: Color = (1.0, 0.0, 1.0)
@@ -35,6 +36,8 @@ def texture_average(b_node: Any, b_output: Any, fold: Callable[[str], Value]) ->
     kind = b_node.type
     if kind in ("TEX_IMAGE", "TEX_ENVIRONMENT"):
         return _image(b_node, b_output)
+    if kind == "TEX_IES":
+        return _luminaire(b_node, fold)
     if kind in _PATTERNS:
         return _shaped(0.5, b_output), "only a typical value is used here"
     if kind in _MIXES:
@@ -57,6 +60,14 @@ def _image(b_node: Any, b_output: Any) -> tuple[Value, str]:
     if mean is None:
         return _channel(MISSING, 1.0, b_output), f'the image "{b_image.name}" cannot be read'
     return _channel(*mean, b_output), "only its average is used here"
+
+
+def _luminaire(b_node: Any, fold: Callable[[str], Value]) -> tuple[Value, str]:
+    strength = fold("Strength")
+    try:
+        return product(strength, web_of(b_node).mean), "only its average is used here"
+    except IesError as error:
+        return product(strength, UNREADABLE), str(error)
 
 
 def _channel(color: Color, alpha: float, b_output: Any) -> Value:

@@ -24,6 +24,11 @@ from tests.fuzz.draw import Draw, fuzz
 LEFT_OUT = ("ShaderNode", "ShaderNodeTree", "ShaderNodeCustomGroup", "ShaderNodeScript")
 KINDS = [name for name in dir(bpy.types) if name.startswith("ShaderNode") and name not in LEFT_OUT]
 OF_EVERY_NODE = {prop.identifier for prop in bpy.types.Node.bl_rna.properties} - {"mute"}
+LUMINAIRES = [
+    f"IES\nTILT=NONE\n1 1 1 2 2 {kind} 1 0 0 0 1 1 1 0 90 0 {end} 1 2 3 4"
+    for kind in (1, 2, 3, 4)
+    for end in (0, 180)
+]
 CAMERA = {
     "name": "Camera",
     "projection": "perspective",
@@ -47,6 +52,7 @@ def set_properties(draw: Draw, b_node: Any) -> None:
             "INT": draw.whole,
             "FLOAT": draw.number,
             "STRING": lambda: draw.choice(["", "UVMap", "position"]),
+            "POINTER": lambda: draw.choice([None, *bpy.data.texts]),
         }
         if prop.type not in values or (prop.type == "ENUM" and not choices) or draw.flag():
             continue
@@ -115,6 +121,8 @@ def main() -> None:
     bpy.context.scene.world = bpy.data.worlds.new("World")
     build.shader_tree(bpy.context.scene.world)
     build.shader_tree(bpy.data.lights.new("Lamp", "POINT"))
+    for content in LUMINAIRES:
+        bpy.data.texts.new("Luminaire").write(content)
     build.add_camera()
     b_depsgraph = bpy.context.evaluated_depsgraph_get()
     fuzz(lambda draw: try_nodes(draw, b_depsgraph))

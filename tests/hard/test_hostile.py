@@ -3,6 +3,7 @@
 `RGP_EXAMPLES` sets how many inputs each test draws; `make fuzz` draws many.
 """
 
+import contextlib
 import os
 
 import bpy
@@ -12,6 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rgp_engine
+from rgp_engine.export.ies import IesError, read
 from rgp_engine.report import last_outcome
 from tests.blender import build
 from tests.hard import scenes
@@ -166,3 +168,41 @@ def test_node_compiler(data):
     bpy.ops.render.render()  # raises what the artist would be told as an error
     assert last_outcome().error == ""
     assert last_outcome().stats["nonfinite_pixels"] == 0
+
+
+LUMINAIRE = (
+    b"IESNA91\nTILT=INCLUDE\n1 2 0 90 1 0.5\n1 -1 1 3 2 1 1 0 0 0\n1 1 50\n0 45 90\n0 90\n5 3 1 4 2 0\n"
+)
+WORDS = st.sampled_from(
+    [b"0", b"1", b"2", b"3", b"-90", b"90", b"180", b"1e38", b"-1", b"nan", b"99999999999", b"x"]
+)
+
+
+def shining(web):
+    """A floor that shines as a luminaire does, seen from above."""
+    scene = scenes.Scene()
+    scene.look((0, 0, 3), (0, 0, 0), 0.5, pixels=(4, 4))
+    towards = {"op": "geometry", "quantity": "object_incoming", "aside": "here"}
+    look = {"op": "photometric_web", "vector": 0, "web": web.record()}
+    outputs = [{"closure": 0, "input": "radiance", "register": 1}]
+    program = {"instructions": [towards, look], "outputs": outputs, "normal": None, "normals": []}
+    scene.place(
+        scene.mesh(scenes.quad(1.0)),
+        scene.material([scenes.closure("emission", radiance=[1.0] * 3)], program),
+    )
+    return scene
+
+
+@EXAMPLES
+@given(
+    st.binary(max_size=200), st.lists(st.tuples(st.integers(0, 40), WORDS), max_size=8), st.integers(0, 200)
+)
+def test_ies_files(junk, changes, end):
+    words = LUMINAIRE.split(b" ")
+    for place, word in changes:
+        words[place % len(words)] = word
+    for content in (junk, b"TILT=" + junk, b" ".join(words)[:end], b" ".join(words)):
+        with contextlib.suppress(IesError):
+            web = read(content)
+            assert web.mean >= 0.0
+            assert np.isfinite(shining(web).render(FEW).combined).all()

@@ -1,4 +1,5 @@
-"""What nodes compute: cases of every node, those of textures in `texture_cases.py`.
+"""What nodes compute: cases of every node, those of textures in `texture_cases.py`
+and `luminaire_cases.py`.
 
 Left out: the Mapping node of type Texture with inputs that vary, which is reported and not rendered.
 """
@@ -12,6 +13,7 @@ from typing import Any
 import bpy
 
 from tests.blender import build
+from tests.render.luminaire_cases import LUMINAIRES
 from tests.render.node_scene import EDGES, IMAGE, SMOOTH, Make, NodeCase, noise_image, output_of, scaled
 from tests.render.texture_cases import TEXTURES
 
@@ -151,5 +153,6 @@ def _color_nodes() -> Iterator[tuple[str, NodeCase]]:
 NODES: dict[str, NodeCase] = {
     **dict(case for part in (_surface_nodes, _value_nodes, _color_nodes) for case in part()),
     **TEXTURES,
+    **LUMINAIRES,
 }
 """By the node's name and what is special."""

@@ -12,6 +12,7 @@ import bpy
 from scenes import common
 from tests.render import cases
 from tests.render.cases import BLUE, GOLD, TINT, Surface, joined, shader
+from tests.render.luminaire_cases import ies_text, luminaire
 
 MIRROR = shader("BsdfGlossy", Color=(0.9, 0.9, 0.9), Roughness=0.0)
 RED = (0.7, 0.15, 0.1)
@@ -128,6 +129,22 @@ def _below_an_emitter(surface: Surface) -> Callable[[], None]:
     return add
 
 
+def _measured(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
+    """Light that differs from direction to direction as a luminaire's does."""
+    made = tree.nodes.new("ShaderNodeEmission")
+    tree.links.new(
+        luminaire(ies_text((0, 45, 90, 180, 200, 300, 360)), strength=3.0)(tree), made.inputs["Strength"]
+    )
+    return made.outputs[0]
+
+
+def _below_a_luminaire() -> None:
+    """It is turned and stretched, and with it where it shines."""
+    cases.add_ball(shader("BsdfDiffuse", Color=BLUE))
+    panel = add_polygons("Luminaire", [_pane(0.5, 0.0)], _measured)
+    panel.location, panel.rotation_euler, panel.scale = (0.6, -0.4, 2.7), (0.4, -0.3, 0.5), (1.5, 0.7, 1.2)
+
+
 PATHS: dict[str, Callable[[], None]] = {
     "diffuse_room": _room,
     "mirror_in_mirror": _ball_before_a_mirror(MIRROR),
@@ -143,6 +160,7 @@ PATHS: dict[str, Callable[[], None]] = {
     "total_inner_reflection": _block_of_glass,
     "checkered_emitter": _below_an_emitter(textured("TexChecker", 4.0)),
     "noisy_emitter": _below_an_emitter(textured("TexNoise", 3.0)),
+    "measured_emitter": _below_a_luminaire,
     "coated_emitter": _below_an_emitter(
         shader("BsdfPrincipled", Base_Color=BLUE, Emission_Color=GOLD, Emission_Strength=2.0, Coat_Weight=1.0)
     ),

@@ -59,6 +59,8 @@ const PATTERN: Kind = One(
 
 const IMAGE: Fields = &[("texture", Texture), ("vector", Register), EXTENSION, INTERPOLATION, UNASSOCIATE];
 
+const WEB: Fields = &[("horizontal", Row(4)), ("vertical", Row(4)), ("intensity", Row(36))];
+
 const TILE: Fields = &[("column", Whole(3)), ("row", Whole(3)), ("texture", Texture)];
 
 /// An instruction of a program.
@@ -86,6 +88,7 @@ pub const INSTRUCTIONS: &[(&str, Fields)] = &[
             ("lowest", Number),
         ],
     ),
+    ("photometric_web", &[("vector", Register), ("web", Record(WEB))]),
     (
         "box_image",
         &[

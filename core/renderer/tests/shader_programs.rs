@@ -1,10 +1,12 @@
 //! Whatever a program is, it is refused with a message or runs to its end.
 
+use std::f32::consts::{PI, TAU};
+
 use glam::{Vec3, Vec4};
 use proptest::prelude::{ProptestConfig, Strategy, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
 use rgp_renderer::shader::{
-    Aside, Encoding, Extension, Instruction, Interpolation, MOST_INSTRUCTIONS, NormalSpace, Pixels, Point,
-    Program, Quantity, Texture, Tile, Value,
+    Aside, Encoding, Extension, Instruction, Interpolation, MOST_INSTRUCTIONS, NormalSpace, PhotometricWeb,
+    Pixels, Point, Program, Quantity, Texture, Tile, Value,
 };
 use serde_json::{Value as Json, json};
 
@@ -106,6 +108,11 @@ fn any_instruction(kind: usize, r: [u16; 10], x: [f32; 4]) -> Instruction {
         20 => {
             json!({"op": "panorama", "vector": r[0], "projection": pick(&["sphere", "tube", "mirror_ball"])})
         }
+        21 => {
+            let [horizontal, vertical] = [r[1], r[2]].map(|count| vec![x[0]; count as usize % 4]);
+            let web = PhotometricWeb { horizontal, vertical, intensity: vec![x[1]; 9] };
+            return Instruction::PhotometricWeb { vector: r[0], web: Box::new(web) };
+        }
         _ => return Instruction::Constant { value: x },
     };
     serde_json::from_value(record).expect("a record of an instruction")
@@ -136,7 +143,7 @@ proptest! {
         let count = instructions.len();
         match Program::new(instructions, 1) {
             Ok(program) => prop_assert_eq!(program.run(&Anywhere(at.into()), &textures()).len(), count),
-            Err(message) => prop_assert!(message.contains("instruction") || message.contains("dimensions")),
+            Err(message) => prop_assert!(["instruction", "dimensions", "web"].iter().any(|word| message.contains(word))),
         }
     }
 }
@@ -276,5 +283,62 @@ fn a_bump_is_the_same_surface_from_both_sides() {
             let found = program.run(&Floor { back }, &[])[3].v.truncate();
             assert!((found - expected).length() < 1e-6, "{found} from behind: {back}");
         }
+    }
+}
+
+/// The intensity that a program finds along a direction.
+fn seen(web: &PhotometricWeb, direction: Vec3) -> f32 {
+    let towards = Instruction::Constant { value: direction.extend(1.0).into() };
+    let look = Instruction::PhotometricWeb { vector: 0, web: Box::new(web.clone()) };
+    let program = Program::new(vec![towards, look], 0).expect("a program");
+    program.run(&Anywhere(Vec4::ZERO), &[])[1].v.x
+}
+
+/// At angles (rad): vertical ones from -z, horizontal ones around z from -y over -x.
+fn direction(horizontal: f32, vertical: f32) -> Vec3 {
+    let (sin, cos) = horizontal.sin_cos();
+    Vec3::new(-sin * vertical.sin(), -cos * vertical.sin(), -vertical.cos())
+}
+
+/// A cubic of Catmull and Rom through evenly spaced points of a parabola is the parabola.
+#[test]
+fn a_photometric_web_of_parabolas_is_exact_between_its_angles() {
+    let (steps, wide, high) = ([8_u16, 6], TAU / 8.0, PI / 6.0);
+    let intensity = |h: f32, v: f32| 1.0 + 0.3 * h + 0.2 * (h - 2.0) * (h - 2.0) + v * (PI - v) * (0.5 + h);
+    let angles = |count: u16, step: f32| (0..=count).map(|i| f32::from(i) * step).collect::<Vec<_>>();
+    let rows = (0..steps[0] + 3).map(|i| (f32::from(i) - 1.0) * wide);
+    let grid = rows.flat_map(|h| (0..steps[1] + 3).map(move |j| intensity(h, (f32::from(j) - 1.0) * high)));
+    let (horizontal, vertical) = (angles(steps[0], wide), angles(steps[1], high));
+    let web = PhotometricWeb { horizontal, vertical, intensity: grid.collect() };
+    for i in 1..40_u16 {
+        let (h, v) = (f32::from(i) * TAU / 40.0, f32::from(i * 7 % 40) * PI / 40.0 + 0.01);
+        let (found, expected) = (seen(&web, 3.0 * direction(h, v)), intensity(h, v));
+        assert!((found - expected).abs() < 1e-4 * expected, "{found}, not {expected}, at {h}, {v}");
+    }
+}
+
+#[test]
+fn beyond_its_angles_a_photometric_web_is_dark() {
+    let web =
+        PhotometricWeb { horizontal: vec![0.0, PI], vertical: vec![0.5, 1.0], intensity: vec![2.0; 16] };
+    assert!((seen(&web, direction(1.0, 0.7)) - 2.0).abs() < 1e-6);
+    for (h, v) in [(1.0, 0.4), (1.0, 1.1), (4.0, 0.7)] {
+        assert_eq!(seen(&web, direction(h, v)), 0.0, "at {h}, {v}");
+    }
+}
+
+#[test]
+fn a_photometric_web_needs_rising_angles_and_all_its_numbers() {
+    let web = |vertical: Vec<f32>, count: usize| {
+        let web =
+            Box::new(PhotometricWeb { horizontal: vec![0.0, TAU], vertical, intensity: vec![1.0; count] });
+        let towards = Instruction::Constant { value: [0.0; 4] };
+        Program::new(vec![towards, Instruction::PhotometricWeb { vector: 0, web }], 0)
+    };
+    assert!(web(vec![0.0, 1.0, PI], 20).is_ok());
+    assert!(web(vec![0.0, 1.0, PI], 19).is_err_and(|message| message.contains("19 intensities, not 4 x 5")));
+    for angles in [vec![], vec![0.0, 2.0, 1.0], vec![0.0, f32::NAN, 1.0]] {
+        let count = 4 * (angles.len() + 2);
+        assert!(web(angles, count).is_err_and(|message| message.contains("do not fall")));
     }
 }

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from ..ies import UNREADABLE, IesError, web_of
 from ..nodes import Output
 from .images import texture_of, tiles_of, unassociates
 from .mapping import own_mapping
@@ -55,6 +56,17 @@ def _environment(c: "Compiler", source: Output) -> "Operand | None":
     interpolation = _INTERPOLATIONS[b_node.interpolation]
     fields = {"texture": texture, "extension": "repeat", "interpolation": interpolation}
     return c.emit("image", vector=place, unassociate=False, **fields)
+
+
+def _luminaire(c: "Compiler", source: Output) -> "Operand | None":
+    strength = c.input(source, "Strength")
+    try:
+        web = web_of(source.b_node).record()
+    except IesError as error:
+        c.report_node(source.b_node, f"{error}; an intensity of {UNREADABLE:g} is used instead, as in Cycles")
+        return c.math("MULTIPLY", strength, UNREADABLE)
+    vector = c.input(source, "Vector") if c.linked(source, "Vector") else c.quantity("object_incoming")
+    return c.math("MULTIPLY", strength, c.emit("photometric_web", vector=vector, web=web))
 
 
 def _uv(c: "Compiler") -> "Register":
@@ -223,6 +235,7 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
     "TEX_IMAGE": _image,
     "TEX_ENVIRONMENT": _environment,
     "TEX_SKY": sky_texture,
+    "TEX_IES": _luminaire,
     "UVMAP": _uv_map,
     "TEX_COORD": _texture_coordinate,
     "NEW_GEOMETRY": _geometry,
@@ -238,7 +251,7 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
 """Instructions of the nodes that look at the hit."""
 
 SOURCES: "dict[str, Callable[[Compiler, Output], bool]]" = {
-    **dict.fromkeys(("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP", "TEX_SKY"), _always),
+    **dict.fromkeys(("FRESNEL", "LAYER_WEIGHT", "NORMAL_MAP", "BUMP", "TEX_SKY", "TEX_IES"), _always),
     "TEX_IMAGE": lambda c, source: _is_rendered(
         source.b_node.projection, texture_of(c, source.b_node), tiles_of(c, source.b_node)
     ),

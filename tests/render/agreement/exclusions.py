@@ -31,7 +31,6 @@ NOT_RENDERED: dict[str, str] = {
     "node/Geometry, Pointiness": _TYPICAL,
     "node/Light Path, lengths and depths": _TYPICAL,
     "node/Gabor Texture": _TYPICAL,
-    "node/IES Texture": _TYPICAL,
     "node/Blackbody of a temperature that varies": _TYPICAL,
     "node/Vector Displacement": _LEFT_OUT,
 }

@@ -178,6 +178,7 @@ impl Point for Sight {
             | Quantity::ObjectNormal
             | Quantity::TrueNormal
             | Quantity::Incoming
+            | Quantity::ObjectIncoming
             | Quantity::Reflection => Value { width: self.width, ..Value::vector(-self.direction) },
             Quantity::IsCamera => self.is(visibility::CAMERA),
             Quantity::IsShadow => self.is(visibility::SHADOW),

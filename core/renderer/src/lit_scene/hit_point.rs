@@ -147,6 +147,7 @@ impl Point for HitPoint<'_> {
             Quantity::ObjectNormal => Value::vector(self.object_normal(towards(self.ns))),
             Quantity::TrueNormal => Value::vector(towards(self.ng)),
             Quantity::Incoming => Value::vector(self.wo),
+            Quantity::ObjectIncoming => Value::vector(self.object_normal(self.wo)),
             Quantity::Reflection => {
                 let ns = towards(self.ns);
                 Value::vector(ns * (2.0 * self.wo.dot(ns)) - self.wo)

@@ -6,6 +6,7 @@ use smallvec::{SmallVec, smallvec};
 use super::arithmetic::{BlendMode, MathFunction, VectorFunction};
 use super::panorama::Projection;
 use super::pattern::{GradientShape, Pattern};
+use super::photometry::PhotometricWeb;
 use super::texture::{Extension, Interpolation};
 
 /// Number of an instruction, whose result it names.
@@ -56,6 +57,8 @@ pub enum Quantity {
     TrueNormal,
     /// Unit vector towards the viewer.
     Incoming,
+    /// The same in the object's space, turned and stretched as normals are.
+    ObjectIncoming,
     /// The viewing direction mirrored at the shading normal.
     Reflection,
     /// Barycentric coordinates.
@@ -133,6 +136,8 @@ pub enum Instruction {
     /// The disk of a sun of an angular radius (rad) in the direction `towards`, seen along `vector`: colors at its lowest and
     /// highest points, darker towards the limb; black around it and below a height (sine).
     SunDisk { vector: Register, towards: [f32; 3], radius: f32, bottom: [f32; 3], top: [f32; 3], lowest: f32 },
+    /// The intensity of a luminaire along a direction.
+    PhotometricWeb { vector: Register, web: Box<PhotometricWeb> },
     /// A texture projected along the object's three axes, by the normal; `vector` in the object's space.
     BoxImage {
         texture: u32,
@@ -216,6 +221,7 @@ impl Instruction {
             | Self::Normalize { vector }
             | Self::Panorama { vector, .. }
             | Self::SunDisk { vector, .. }
+            | Self::PhotometricWeb { vector, .. }
             | Self::Image { vector, .. }
             | Self::TiledImage { vector, .. }
             | Self::Gradient { vector, .. } => smallvec![vector],
@@ -276,6 +282,7 @@ impl Instruction {
                 format!("instruction {index} has {} inputs, not {}", inputs.len(), pattern.input_count()),
             ),
             Self::Pattern { ref pattern, .. } => pattern.fault(),
+            Self::PhotometricWeb { ref web, .. } => web.fault(),
             _ => None,
         }
     }

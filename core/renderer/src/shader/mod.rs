@@ -13,6 +13,7 @@ mod instruction;
 mod noise;
 mod panorama;
 mod pattern;
+mod photometry;
 mod run;
 mod surface;
 mod texture;
@@ -27,6 +28,7 @@ pub use instruction::{Aside, Instruction, MOST_INSTRUCTIONS, NormalSpace, Quanti
 pub use noise::Fractal;
 pub use panorama::Projection;
 pub use pattern::{GradientShape, Pattern, VoronoiOutput, WaveDirection, WaveProfile};
+pub use photometry::PhotometricWeb;
 pub use texture::{Encoding, Extension, Interpolation, Pixels, Texture};
 pub use voronoi::{Feature, Metric};
 

@@ -98,6 +98,7 @@ fn execute(
         | Instruction::Normalize { .. }
         | Instruction::Panorama { .. }
         | Instruction::SunDisk { .. }
+        | Instruction::PhotometricWeb { .. }
         | Instruction::Combine { .. }
         | Instruction::Alpha { .. }
         | Instruction::Channel { .. }
@@ -133,6 +134,7 @@ fn vectors(instruction: &Instruction, r: &Operands<'_>) -> Value {
             let disk = panorama::SunDisk { towards, radius, bottom, top, lowest };
             disk.seen(r.value(vector))
         }
+        Instruction::PhotometricWeb { vector, ref web } => Value::number(web.intensity(r.vector(vector))),
         Instruction::Combine { x, y, z } => {
             let v = Vec3::new(r.number(x), r.number(y), r.number(z));
             Value { v: v.extend(1.0), width: r.width(x).max(r.width(y)).max(r.width(z)) }
