@@ -275,14 +275,16 @@ impl<'a> Accumulator<'a> {
             sets.flat_map(|set| (0..count).map(move |at| bin(set, at))).collect()
         };
         let filled = |level: &mut Vec<Mutex<GlossySums>>| -> BinSums {
-            let sums = level.par_iter_mut().map(|sums| sums.get_mut().unwrap_or_else(PoisonError::into_inner));
+            let sums =
+                level.par_iter_mut().map(|sums| sums.get_mut().unwrap_or_else(PoisonError::into_inner));
             let filled = sums.enumerate().filter(|(_, sums)| !sums.is_empty());
             filled.map(|(place, sums)| (place, by_bin(&std::mem::take(sums)))).collect()
         };
         let mut glossy: Vec<_> = self.glossy.iter_mut().map(filled).collect();
         for level in (0..glossy.len()).rev() {
-            let (matter, rest): (BinSums, BinSums) =
-                std::mem::take(&mut glossy[level]).into_iter().partition(|&(place, _)| lit.matters(level, place));
+            let (matter, rest): (BinSums, BinSums) = std::mem::take(&mut glossy[level])
+                .into_iter()
+                .partition(|&(place, _)| lit.matters(level, place));
             for (place, values) in rest {
                 if let Some(parent) = self.layout.parent(level, place) {
                     self.bins.merge(self.layout, (level, place), &values, parent, &mut glossy[level - 1]);
@@ -292,13 +294,7 @@ impl<'a> Accumulator<'a> {
             let number = |place: usize| places.partition_point(|&other| (other as usize) < place);
             glossy[level] = matter.into_iter().map(|(place, values)| (number(place), values)).collect();
         }
-        Sums {
-            cells,
-            glossy,
-            bins: self.bins,
-            quantum: self.quantum,
-            bin_quantum: self.quantum * COARSER,
-        }
+        Sums { cells, glossy, bins: self.bins, quantum: self.quantum, bin_quantum: self.quantum * COARSER }
     }
 }
 
