@@ -5,8 +5,8 @@ use glam::{DQuat, DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::math::Side;
 use rgp_renderer::pyramid::{
-    Accumulator, Deposit, Grid, Layout, NormalClasses, Openness, Pyramid, SidePoint, SurfaceTriangle,
-    Surroundings,
+    Accumulator, Deposit, DirectionBins, Grid, Lanes, Layout, Leaving, NormalClasses, Openness, Pyramid,
+    SidePoint, SurfaceTriangle, Surroundings,
 };
 
 /// All of a square sees all of it.
@@ -25,7 +25,15 @@ const CELLS: u64 = 27;
 const SIDE: f64 = CELLS as f64 * CELL;
 
 /// A square from the origin of scene space to (SIDE, SIDE, 0), turned about the origin.
-struct Square(DQuat);
+struct Square {
+    turned: DQuat,
+    glossy: bool,
+}
+
+/// One whose light is not needed by direction.
+const fn diffuse(turned: DQuat) -> Square {
+    Square { turned, glossy: false }
+}
 
 impl Surroundings for Square {
     fn triangle_count(&self) -> usize {
@@ -33,10 +41,10 @@ impl Surroundings for Square {
     }
 
     fn triangle(&self, i: usize) -> SurfaceTriangle {
-        let p = |x: f64, y: f64| self.0 * DVec3::new(x, y, 0.0) * SIDE;
+        let p = |x: f64, y: f64| self.turned * DVec3::new(x, y, 0.0) * SIDE;
         let third = if i == 0 { [p(1.0, 0.0), p(1.0, 1.0)] } else { [p(1.0, 1.0), p(0.0, 1.0)] };
         let corners = [p(0.0, 0.0), third[0], third[1]];
-        SurfaceTriangle { corners, normal: normal(corners), glossy: false }
+        SurfaceTriangle { corners, normal: normal(corners), glossy: self.glossy }
     }
 
     fn openness(&self, points: &[SidePoint]) -> Vec<Openness> {
@@ -70,14 +78,18 @@ fn normal([a, b, c]: [DVec3; 3]) -> Vec3 {
 }
 
 fn layout(turned: DQuat) -> Layout {
+    layout_of(&diffuse(turned))
+}
+
+fn layout_of(square: &Square) -> Layout {
     let half = 16.0 * CELL;
-    let center = turned * DVec3::new(0.5, 0.5, 0.0) * SIDE;
+    let center = square.turned * DVec3::new(0.5, 0.5, 0.0) * SIDE;
     let seen = [center - half, center + half];
     // The square's corner lies 2½ cells from the lowest corner of a coarsest cell.
     let world_origin = DVec3::splat(-(2.5 + ANCHOR_OFFSET) * CELL);
     let grid = Grid::new(seen, seen, 32, world_origin);
     assert_eq!(grid.levels.len(), 3);
-    Layout::new(grid, NormalClasses::Six, &Square(turned)).expect("nobody cancels")
+    Layout::new(grid, NormalClasses::Six, square).expect("nobody cancels")
 }
 
 /// Photon `i` of `n`², evenly over the square.
@@ -97,7 +109,7 @@ fn constant_field(layout: &Layout, turned: DQuat, irradiance: f64, n: u64, photo
             "{p} has no cell"
         );
     }
-    Pyramid::build(accumulator, layout, photons_per_cell, &Square(turned)).expect("nobody cancels")
+    Pyramid::build(accumulator, layout, photons_per_cell, &diffuse(turned)).expect("nobody cancels")
 }
 
 /// Irradiance of the level's cells times the part of the square in them, summed; the square is not turned.
@@ -135,7 +147,7 @@ fn flux_is_the_same_on_every_level() {
         }
         assert_eq!((accumulator.deposited(), accumulator.lost()), (photons, 0));
         let pyramid =
-            Pyramid::build(accumulator, &layout, 16, &Square(DQuat::IDENTITY)).expect("nobody cancels");
+            Pyramid::build(accumulator, &layout, 16, &diffuse(DQuat::IDENTITY)).expect("nobody cancels");
         for level in 0..3 {
             let flux = flux_of_level(&pyramid, &layout, level);
             assert!((flux / total - 1.0).abs() < 1e-6, "{photons} photons, level {level}: {flux} of {total}");
@@ -189,6 +201,43 @@ fn a_constant_field_on_a_slanted_surface() {
     }
 }
 
+/// Sends the same towards every direction.
+struct Even(f32);
+
+impl Leaving for Even {
+    fn towards(&self, directions: &Lanes) -> Lanes {
+        directions.map(|axis| axis.map(|_| self.0))
+    }
+}
+
+/// Bins too are those of the coarser cells where photons are few: even light is as bright in every bin, whichever cells
+/// hold enough to be read.
+#[test]
+fn even_light_is_even_in_every_bin() {
+    let square = Square { turned: DQuat::IDENTITY, glossy: true };
+    let (layout, bins) = (layout_of(&square), DirectionBins { elevation: 4, azimuth: 8 });
+    let n = 4 * CELLS;
+    let flux = (SIDE * SIDE / (n * n) as f64) as f32;
+    for photons_per_cell in [1, 20, 1000] {
+        let accumulator = Accumulator::new(&layout, 1.0, Some(bins));
+        for i in 0..n * n {
+            let photon = landed(position(i, n).as_vec3(), Vec3::Z, Rgb::splat(flux));
+            let landing = accumulator.deposit(&photon).expect("it has a cell");
+            accumulator.deposit_glossy(landing, [0.5, 0.5], &Even(5.0 * flux));
+        }
+        let pyramid =
+            Pyramid::build(accumulator, &layout, photons_per_cell, &square).expect("nobody cancels");
+        for level in 0..3 {
+            for i in 0..53 * 53 {
+                let direction = bins.direction(i as usize % bins.count(), [0.5, 0.5]);
+                let (p, class) = (position(i, 53).as_vec3(), pyramid.class(front(Vec3::Z)));
+                let found = pyramid.view(0).glossy_radiance(p, class, level, direction, [0.0; 2]).0[1];
+                assert!((found / 5.0 - 1.0).abs() < 1e-3, "{photons_per_cell}, level {level}, {p}: {found}");
+            }
+        }
+    }
+}
+
 #[test]
 fn the_order_of_deposits_does_not_matter() {
     let layout = layout(DQuat::IDENTITY);
@@ -199,7 +248,7 @@ fn the_order_of_deposits_does_not_matter() {
         for i in order {
             accumulator.deposit(&landed(position(i, n).as_vec3(), Vec3::Z, flux(i)));
         }
-        Pyramid::build(accumulator, &layout, 16, &Square(DQuat::IDENTITY)).expect("nobody cancels")
+        Pyramid::build(accumulator, &layout, 16, &diffuse(DQuat::IDENTITY)).expect("nobody cancels")
     };
     let (up, down) = (build(&mut (0..n * n)), build(&mut (0..n * n).rev()));
     for level in 0..3 {
