@@ -13,7 +13,7 @@ from mathutils import Matrix
 with atheris.instrument_imports(include=["rgp_engine"]):
     import rgp_engine
     from rgp_engine.export.context import ExportContext
-    from rgp_engine.export.light import lamp_power
+    from rgp_engine.export.light import LampCompiler, lamp_shape, node_factor
     from rgp_engine.export.material import material_index
     from rgp_engine.export.world import world_radiance
     from rgp_engine.report import ProblemLog
@@ -101,7 +101,8 @@ def try_nodes(draw: Draw, b_depsgraph: Any) -> None:
     radiance, program = world_radiance(context, b_scene.world)
     world = {"name": "World", "radiance": list(radiance), "program": program}
     builder.set_world({**world, "visibility": 31, "film_transparent": False})
-    lamp_power(context, b_light, Matrix())
+    factor, program = node_factor(LampCompiler(context, b_light), b_light)
+    builder.add_lamp({**LAMP, "shape": lamp_shape(b_light), "power": list(factor), "program": program})
     builder.set_camera(CAMERA)
     builder.finish()
     assert all(problem.subject and problem.message for problem in log.problems), log.problems

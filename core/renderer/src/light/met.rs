@@ -69,8 +69,8 @@ impl Lights {
                 Shape::Sun(_) | Shape::Mesh(_) => None,
             };
             if let Some(crossing) = crossing {
-                let radiance = crossing.radiance * self.share(index, sight);
-                each(radiance, self.pdf_against(&receiver, index, crossing.pdf));
+                let radiance = light.shown(crossing.radiance, ray.from, ray.wi, crossing.distance);
+                each(radiance * self.share(index, sight), self.pdf_against(&receiver, index, crossing.pdf));
             }
         }
     }
@@ -99,8 +99,8 @@ impl Lights {
                 continue;
             }
             if let Some(crossing) = lamp.crossing(wi) {
-                let radiance = crossing.radiance * self.share(index, sight);
-                each(radiance, self.pdf_against(&receiver, index, crossing.pdf));
+                let radiance = light.shown(crossing.radiance, receiver.p, wi, crossing.distance);
+                each(radiance * self.share(index, sight), self.pdf_against(&receiver, index, crossing.pdf));
             }
         }
     }
