@@ -8,7 +8,6 @@ from typing import Any
 import atheris
 import bpy
 import rgp_core
-from mathutils import Matrix
 
 with atheris.instrument_imports(include=["rgp_engine"]):
     import rgp_engine
@@ -32,6 +31,13 @@ CAMERA = {
     "resolution": [4, 4],
     "region": [0, 0, 4, 4],
     "clip": [0.1, 100.0],
+}
+
+LAMP = {
+    "name": "Lamp",
+    "world_from_lamp": CAMERA["world_from_camera"],
+    "visibility": 31,
+    "casts_shadow": True,
 }
 
 
