@@ -163,7 +163,7 @@ def _falls_off(c: "Compiler", source: Output) -> bool:
     if not c.of_lamp:
         return False
     is_plain = source.b_socket.identifier == "Quadratic" and c.value(source.input("Smooth")) == 0.0
-    return not (is_plain or c.is_sun) or isinstance(c.value(source.input("Strength")), Varying)
+    return not is_plain or isinstance(c.value(source.input("Strength")), Varying)
 
 
 def _attribute(c: "Compiler", source: Output) -> "Operand | None":
