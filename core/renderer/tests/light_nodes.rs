@@ -70,19 +70,20 @@ fn light_that_grows_along_a_lamp_has_a_closed_form_on_a_plane() {
     }
 }
 
-/// A factor of 2 everywhere is twice the light, of photons and surfaces alike.
+/// A factor of 2 everywhere is twice the light, of photons and surfaces alike; of red alone it is twice the red.
 #[test]
 fn a_constant_factor_multiplies_the_light() {
     for shape in shapes() {
         let plain = turned(lamp(shape, POWER, Vec3::new(0.0, 0.1, 0.3)));
         let twice = one_lamp(with_nodes(plain.clone(), vec![constant(2.0)]));
+        let red =
+            one_lamp(with_nodes(plain.clone(), vec![Instruction::Constant { value: [2.0, 1.0, 1.0, 1.0] }]));
         let once = one_lamp(plain);
-        assert_close(
-            f64::from(twice.total_flux().0[1]),
-            2.0 * f64::from(once.total_flux().0[1]),
-            // One look in 513 is at a factor of 1.
-            2e-3,
-        );
+        let flux = |lights: &Lights, channel: usize| f64::from(lights.total_flux().0[channel]);
+        // One look in 513 is at a factor of 1.
+        assert_close(flux(&twice, 1), 2.0 * flux(&once, 1), 2e-3);
+        assert_close(flux(&red, 0), 2.0 * flux(&once, 0), 2e-3);
+        assert_close(flux(&red, 1), flux(&once, 1), 2e-3);
         let mut random = Random(2);
         for _ in 0..200 {
             let u = random.uniforms();

@@ -59,12 +59,12 @@ impl LampShader {
             taken_for: 0.0,
         };
         // One more, of factor 1: what no photon found may still be there.
-        let (mut light, mut flux) = (lamp.power, 1.0);
+        let (mut light, mut flux, all) = (lamp.power, 1.0, shape.flux(ball).mean());
         for id in 0..LOOKS {
             let mut sampler = PhotonSampler::new(u64::from(id), 0);
             let [x, y, d0, d1, along] = std::array::from_fn(|_| sampler.draw());
             let photon = shape.emit(ball, 0.0, [x, y], [d0, d1]);
-            let weight = photon.flux.mean() / shape.flux(ball).mean();
+            let weight = photon.flux.mean() / all;
             if weight.is_finite() {
                 light += shader.light(&shader.look_of(&photon, shape, ball, along)) * weight;
                 flux += weight;

@@ -121,8 +121,10 @@ impl Light {
     /// Light of its shape as it is seen along a ray.
     #[inline]
     pub(super) fn shown(&self, light: Rgb, from: Vec3, wi: Vec3, distance: f32) -> Rgb {
-        let shown = |shader: &Box<LampShader>| shader.shown(light, &Look { from, wi, distance });
-        self.shader.as_ref().map_or(light, shown)
+        match &self.shader {
+            None => light,
+            Some(shader) => shader.shown(light, &Look { from, wi, distance }),
+        }
     }
 
     /// Bounds of the lamp, or of each emitting triangle.

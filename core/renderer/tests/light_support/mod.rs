@@ -47,7 +47,7 @@ pub(crate) fn with_nodes(mut lamp: Lamp, instructions: Vec<Instruction>) -> Lamp
     let axes = DMat3::from_cols(lamp.x_axis.as_dvec3(), lamp.y_axis.as_dvec3(), -lamp.axis.as_dvec3());
     let world_from_lamp = DAffine3::from_mat3_translation(axes, lamp.position.as_dvec3());
     let factor = instructions.len() as u16 - 1;
-    let program = Program::new(instructions, 0).unwrap();
+    let program = Program::new(instructions, 0).expect("the instructions fit together");
     let lamp_from_world = world_from_lamp.inverse();
     lamp.program = Some(LampProgram { program, factor, info: ObjectInfo::default(), lamp_from_world });
     lamp
