@@ -93,6 +93,7 @@ impl LampShader {
     }
 
     /// What light of the lamp it is taken for really is.
+    #[inline(never)]
     pub(super) fn shown(&self, light: Rgb, look: &Look) -> Rgb {
         light / self.taken_for * self.light(look)
     }
