@@ -146,6 +146,7 @@ LAMPS = {
     "point_falloff_smooth": LampNodes(POINT, _falloff("Quadratic", 4.0)),
     "point_falloff_linear": LampNodes(POINT, _falloff("Linear", 0.0)),
     "soft_falloff_constant": LampNodes(SOFT, _falloff("Constant", 1.0)),
+    "sphere_falloff_linear_seen": LampNodes(SPHERE_SEEN, _falloff("Linear", 0.0)),
     "spot_gobo_by_normal": LampNodes(SPOT, _gobo),
     "spot_image": LampNodes(SPOT, _image()),
     "spot_sphere_noise_by_object": LampNodes(SPOT_SPHERE, _noise("Object", 4.0)),

@@ -45,6 +45,8 @@ pub(super) struct Look {
     pub(super) wi: Vec3,
     /// From there to the lamp; infinite for suns.
     pub(super) distance: f32,
+    /// How far the ray had come before.
+    pub(super) before: f32,
 }
 
 impl LampShader {
@@ -79,7 +81,7 @@ impl LampShader {
     fn look_of(&self, photon: &Photon, shape: &Shape, ball: &SceneBall, along: f32) -> Look {
         let reach = photon.lit_from.min(1.0) + along * ball.reach_from(self.lamp.position);
         let (from, wi) = (photon.origin + photon.direction * reach, -photon.direction);
-        Look { from, wi, distance: shape.distance(from, wi) }
+        Look { from, wi, distance: shape.distance(from, wi), before: 0.0 }
     }
 
     /// Power, the same in each channel, of the lamp that this one is taken for.
@@ -178,7 +180,8 @@ impl<'a> Sight<'a> {
     }
 
     fn ray_length(&self) -> f32 {
-        if self.shader.is_sun() { f32::MAX } else { self.look.distance / self.shader.space.scale as f32 }
+        let length = self.look.before + self.look.distance;
+        if self.shader.is_sun() { f32::MAX } else { length / self.shader.space.scale as f32 }
     }
 
     fn object_normal(&self) -> Vec3 {

@@ -45,6 +45,7 @@ use distant::SceneBall;
 pub use emitter::EmitterPoint;
 use emitter::MeshEmitter;
 pub use environment::Environment;
+use lamp_shader::Look;
 use outline::Outlines;
 pub use proxy::LampProxy;
 use select::{Cdf, Choice};
@@ -389,7 +390,8 @@ impl Lights {
     #[must_use]
     pub fn arrived(&self, flux: Rgb, shaded: Option<usize>, direction: Vec3, p: Vec3) -> Rgb {
         let Some(light) = shaded.map(|light| &self.lights[light]) else { return flux };
-        light.shown(flux, p, -direction, light.shape.distance(p, -direction))
+        let (wi, distance) = (-direction, light.shape.distance(p, -direction));
+        light.shown(flux, &Look { from: p, wi, distance, before: 0.0 })
     }
 
     /// A direction from the receiver towards a lamp, an emissive triangle or a world that is not the same on all sides:
@@ -418,7 +420,8 @@ impl Lights {
             Shape::Sun(lamp) => lamp.sample(position),
             Shape::Mesh(mesh) => mesh.sample(p, emitter.triangle as usize, position)?,
         };
-        let radiance_over_pdf = light.shown(sample.radiance_over_pdf, p, sample.wi, sample.distance);
+        let look = Look { from: p, wi: sample.wi, distance: sample.distance, before: 0.0 };
+        let radiance_over_pdf = light.shown(sample.radiance_over_pdf, &look);
         if light.shader.is_some() && radiance_over_pdf.is_black() {
             return None;
         }

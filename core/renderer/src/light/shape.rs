@@ -120,10 +120,10 @@ impl Light {
 
     /// Light of its shape as it is seen along a ray.
     #[inline]
-    pub(super) fn shown(&self, light: Rgb, from: Vec3, wi: Vec3, distance: f32) -> Rgb {
+    pub(super) fn shown(&self, light: Rgb, look: &Look) -> Rgb {
         match &self.shader {
             None => light,
-            Some(shader) => shader.shown(light, &Look { from, wi, distance }),
+            Some(shader) => shader.shown(light, look),
         }
     }
 
