@@ -4,11 +4,11 @@ from typing import Any
 
 from .context import ExportContext
 from .coordinates import matrix_array
-from .hashing import name_hash
 from .light import export_light
 from .material import material_index
 from .mesh import mesh_arrays
 from .motion import Moving
+from .object_info import object_info
 from .visibility import instance_bits, owner
 
 # Without triangles of their own. What curves, texts, surfaces and metaballs look like comes as an instance of a mesh.
@@ -53,22 +53,11 @@ def _export_mesh(context: ExportContext, b_instance: Any, moving: Moving | None)
     matrix = matrix_array(b_instance.matrix_world)
     index = context.builder.add_object(b_object.name, mesh, matrix, materials, visibility)
     if context.asking_objects.intersection(materials):
-        context.builder.set_object_info(index, _object_info(b_instance))
+        context.builder.set_object_info(index, object_info(b_instance))
     if context.linking.is_used:
         context.builder.set_object_links(index, context.linking.of_object(owner(b_instance)))
     if moving is not None:
         moving.note(b_instance, index, mesh)
-
-
-def _object_info(b_instance: Any) -> dict[str, Any]:
-    """What the node Object Info says."""
-    b_object = b_instance.object
-    random = b_instance.random_id if b_instance.is_instance else name_hash(b_object.name)
-    return {
-        "color": [float(channel) for channel in b_object.color],
-        "index": float(b_object.pass_index),
-        "random": random % (1 << 32) / float((1 << 32) - 1),
-    }
 
 
 def _add_mesh(context: ExportContext, b_object: Any, layers: frozenset[str]) -> int | None:

@@ -4,9 +4,9 @@ from typing import Any
 
 from .arithmetic import BLACK, Color
 from .closures import emissions
-from .compiler import MOST_INSTRUCTIONS, Compiler, Register
+from .compiler import Compiler, summed
 from .context import ExportContext
-from .fold import TOO_DEEP, Varying, as_color
+from .fold import TOO_DEEP
 from .nodes import Input, Output, node_tree, origin, output_node
 from .visibility import world_bits
 
@@ -60,17 +60,7 @@ def world_radiance(context: ExportContext, b_world: Any) -> tuple[Color, dict[st
 def _compiled(compiler: WorldCompiler, b_output: Any) -> tuple[Color, dict[str, Any] | None]:
     if isinstance(origin(Input(b_output.inputs["Volume"], ())), Output):
         compiler.report("volumes are not supported yet; left out")
-    parts = emissions(compiler, Input(b_output.inputs["Surface"], ()))
-    colors = [as_color(part.typical if isinstance(part, Varying) else part) for part in parts]
-    red, green, blue = (sum(color[channel] for color in colors) for channel in range(3))
-    if not any(isinstance(part, Varying) for part in parts):
-        return (red, green, blue), None
-    total = compiler.register(0.0)
-    for part in parts:
-        total = compiler.vector_math(
-            "ADD", total, Register(part.register) if isinstance(part, Varying) else part
-        )
-    if len(compiler.instructions) > MOST_INSTRUCTIONS:
-        compiler.report("its nodes are too many; what varies is replaced by a typical value")
-        return (red, green, blue), None
-    return (red, green, blue), {"instructions": compiler.instructions, "radiance": total.index}
+    radiance, register = summed(compiler, emissions(compiler, Input(b_output.inputs["Surface"], ())))
+    if register is None:
+        return radiance, None
+    return radiance, {"instructions": compiler.instructions, "radiance": register.index}

@@ -115,13 +115,145 @@ def test_quadratic_falloff_is_the_usual_one(scene, lamp):
     assert lamp()["power"] == pytest.approx([40.0] * 3)
 
 
-def test_other_light_nodes_are_reported(scene, lamp, problems):
+def lamp_nodes(kind="AREA", **properties):
+    """A lamp whose nodes are an Emission of strength 1, alone: its light, tree and Emission."""
+    b_light = build.add_light(kind, energy=10.0, **properties).data
+    b_tree = build.shader_tree(b_light)
+    b_emission = build.node(b_tree, "ShaderNodeEmission", Color=(1.0, 1.0, 1.0), Strength=1.0)
+    build.connect(b_tree, b_emission, b_tree.nodes.new("ShaderNodeOutputLight"), "Surface")
+    return b_light, b_tree, b_emission
+
+
+def asked(record):
+    """What the program of a lamp asks of the point of it that is seen."""
+    return {step["quantity"] for step in record["program"]["instructions"] if step["op"] == "geometry"}
+
+
+def test_constant_nodes_need_no_program(scene, lamp, problems):
+    _, b_tree, b_emission = lamp_nodes()
+    b_emission.inputs["Strength"].default_value = 3.0
+    b_color = b_tree.nodes.new("ShaderNodeRGB")
+    b_color.outputs[0].default_value = (1.0, 0.5, 0.0, 1.0)
+    build.connect(b_tree, b_color, b_emission, "Color")
+    record = lamp()
+    assert record["power"] == pytest.approx([30.0, 15.0, 0.0])
+    assert record["program"] is None
+    assert not problems()
+
+
+def test_mixed_emissions_of_constants(scene, lamp):
+    _, b_tree, b_emission = lamp_nodes()
+    b_output = next(b_node for b_node in b_tree.nodes if b_node.type == "OUTPUT_LIGHT")
+    b_mix = build.node(b_tree, "ShaderNodeMixShader", Fac=0.25)
+    b_other = build.node(b_tree, "ShaderNodeEmission", Color=(1.0, 0.0, 0.0), Strength=4.0)
+    build.connect(b_tree, b_emission, b_mix, "Shader")
+    build.connect(b_tree, b_other, b_mix, "Shader_001")
+    build.connect(b_tree, b_mix, b_output, "Surface")
+    assert lamp()["power"] == pytest.approx([17.5, 7.5, 7.5])
+
+
+def test_an_image_becomes_a_program(scene, export, problems):
+    build.add_camera()
+    _, b_tree, b_emission = lamp_nodes()
+    b_texture = b_tree.nodes.new("ShaderNodeTexImage")
+    b_texture.image = panorama()
+    build.connect(b_tree, b_texture, b_emission, "Color")
+    recording = export()
+    (record,) = recording.lamps
+    assert record["power"] == pytest.approx([10.0] * 3), "the program computes a factor of it"
+    assert asked(record) == {"parametric"}
+    operations = [step["op"] for step in record["program"]["instructions"]]
+    assert "image" in operations
+    assert record["program"]["factor"] < len(operations)
+    assert recording.textures[0]["pixels"].shape == (4, 8, 4)
+    assert not problems()
+
+
+@pytest.mark.parametrize(
+    ("output", "quantity"),
+    [
+        ("Normal", "object_normal"),
+        ("UV", "parametric"),
+        ("Object", "object_position"),
+        ("Generated", "object_position"),
+    ],
+)
+def test_coordinates_are_those_of_the_lamp(scene, lamp, problems, output, quantity):
+    _, b_tree, b_emission = lamp_nodes("POINT")
+    build.connect(b_tree, b_tree.nodes.new("ShaderNodeTexCoord"), b_emission, "Color", output)
+    assert asked(lamp()) == {quantity}
+    assert not problems()
+
+
+@pytest.mark.parametrize(
+    ("kind", "output", "smooth", "varies"),
+    [
+        ("POINT", "Quadratic", 0.0, False),
+        ("POINT", "Quadratic", 2.0, True),
+        ("AREA", "Linear", 0.0, True),
+        ("SPOT", "Constant", 0.0, True),
+        ("SUN", "Quadratic", 0.0, False),
+    ],
+)
+def test_falloff_asks_how_far_the_lamp_is(scene, lamp, problems, kind, output, smooth, varies):
+    _, b_tree, b_emission = lamp_nodes(kind)
+    b_falloff = build.node(b_tree, "ShaderNodeLightFalloff", Strength=4.0, Smooth=smooth)
+    build.connect(b_tree, b_falloff, b_emission, "Strength", output)
+    record = lamp()
+    if varies:
+        assert asked(record) == {"ray_length"}
+    else:
+        assert record["program"] is None
+        assert record["power"] == pytest.approx([40.0] * 3)
+    assert not problems()
+
+
+def test_suns_do_not_fall_off(scene, lamp, problems):
+    _, b_tree, b_emission = lamp_nodes("SUN")
+    b_falloff = build.node(b_tree, "ShaderNodeLightFalloff", Strength=4.0, Smooth=2.0)
+    build.connect(b_tree, b_falloff, b_emission, "Strength", "Linear")
+    record = lamp()
+    assert asked(record) == set()
+    assert [4.0] * 4 in [step.get("value") for step in record["program"]["instructions"]]
+    assert not problems()
+
+
+def test_lamps_tell_what_they_are_asked(scene, lamp):
+    _, b_tree, b_emission = lamp_nodes("POINT")
+    bpy.data.objects["Lamp"].color, bpy.data.objects["Lamp"].pass_index = (0.1, 0.2, 0.3, 0.4), 7
+    build.connect(b_tree, b_tree.nodes.new("ShaderNodeObjectInfo"), b_emission, "Color", "Color")
+    record = lamp()
+    assert asked(record) == {"object_color"}
+    assert record["info"]["color"] == pytest.approx([0.1, 0.2, 0.3, 0.4])
+    assert record["info"]["index"] == 7.0
+
+
+def test_what_lamps_do_not_know_is_reported(scene, lamp, problems):
+    _, b_tree, b_emission = lamp_nodes("POINT")
+    b_info = b_tree.nodes.new("ShaderNodeNewGeometry")
+    b_info.label = "Where"
+    build.connect(b_tree, b_info, b_emission, "Strength", "Pointiness")
+    lamp()
+    assert any('Lamp: node "Where"' in text for text in problems())
+
+
+def test_lamps_have_no_layers(scene, lamp, problems):
+    _, b_tree, b_emission = lamp_nodes("POINT")
+    b_layer = b_tree.nodes.new("ShaderNodeAttribute")
+    b_layer.attribute_name = "Paint"
+    build.connect(b_tree, b_layer, b_emission, "Color", "Color")
+    lamp()
+    assert "Lamp: lamps have no attribute Paint; 0 is used" in problems()
+
+
+def test_lamps_whose_nodes_emit_nothing_are_left_out(scene, export, problems):
+    build.add_camera()
     b_light = build.add_light("POINT", energy=10.0).data
     b_tree = build.shader_tree(b_light)
     b_mix = b_tree.nodes.new("ShaderNodeMixShader")
     build.connect(b_tree, b_mix, b_tree.nodes.new("ShaderNodeOutputLight"), "Surface")
-    assert lamp()["power"] == pytest.approx([10.0] * 3)
-    assert "Lamp: its nodes are not a single Emission; the light's own power and color are used" in problems()
+    assert export().lamps == []
+    assert "Lamp: its nodes emit nothing; it is left out" in problems()
 
 
 def test_lamps_without_light_are_left_out(scene, export):

@@ -8,12 +8,11 @@ from typing import Any
 import atheris
 import bpy
 import rgp_core
-from mathutils import Matrix
 
 with atheris.instrument_imports(include=["rgp_engine"]):
     import rgp_engine
     from rgp_engine.export.context import ExportContext
-    from rgp_engine.export.light import lamp_power
+    from rgp_engine.export.light import LampCompiler, lamp_shape, node_factor
     from rgp_engine.export.material import material_index
     from rgp_engine.export.world import world_radiance
     from rgp_engine.report import ProblemLog
@@ -37,6 +36,13 @@ CAMERA = {
     "resolution": [4, 4],
     "region": [0, 0, 4, 4],
     "clip": [0.1, 100.0],
+}
+
+LAMP = {
+    "name": "Lamp",
+    "world_from_lamp": CAMERA["world_from_camera"],
+    "visibility": 31,
+    "casts_shadow": True,
 }
 
 
@@ -107,7 +113,8 @@ def try_nodes(draw: Draw, b_depsgraph: Any) -> None:
     radiance, program = world_radiance(context, b_scene.world)
     world = {"name": "World", "radiance": list(radiance), "program": program}
     builder.set_world({**world, "visibility": 31, "film_transparent": False})
-    lamp_power(context, b_light, Matrix())
+    factor, program = node_factor(LampCompiler(context, b_light), b_light)
+    builder.add_lamp({**LAMP, "shape": lamp_shape(b_light), "power": list(factor), "program": program})
     builder.set_camera(CAMERA)
     builder.finish()
     assert all(problem.subject and problem.message for problem in log.problems), log.problems

@@ -8,6 +8,7 @@ import os
 
 import bpy
 import numpy as np
+import pytest
 import rgp_core
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -139,9 +140,10 @@ def set_inputs(data, b_node) -> None:
                 value[i] = data.draw(NUMBERS)
 
 
+@pytest.mark.parametrize("of", ["material", "lamp"])
 @EXAMPLES
 @given(st.data())
-def test_node_compiler(data):
+def test_node_compiler(of, data):
     """Nodes of any kind, any numbers in them, linked at random, circles included."""
     if not hasattr(bpy.types.Scene, "rgp"):
         rgp_engine.register()
@@ -152,8 +154,12 @@ def test_node_compiler(data):
     b_scene.rgp.photon_pass.photon_count, b_scene.rgp.pyramid.finest_resolution = 500, 8
     b_scene.rgp.gather.rays, b_scene.rgp.gather.camera_samples = 4, 1
     build.lit_room()
-    b_material, b_tree, b_output = build.material()
-    bpy.data.objects["Floor"].data.materials.append(b_material)
+    if of == "material":
+        b_material, b_tree, b_output = build.material()
+        bpy.data.objects["Floor"].data.materials.append(b_material)
+    else:
+        b_tree = build.shader_tree(bpy.data.lights["Lamp"])
+        b_output = b_tree.nodes.new("ShaderNodeOutputLight")
     b_nodes = []
     for kind in data.draw(st.lists(st.sampled_from(shader_nodes()), min_size=1, max_size=6)):
         try:

@@ -33,7 +33,7 @@ pub fn scene(draw: &mut Draw<'_>) -> Result<Scene, RenderError> {
         let steps = draw.list(4, |draw| draw.flag().then(|| (0..count).map(|_| draw.singles()).collect()));
         builder.set_mesh_motion(mesh, steps)
     });
-    for lamp in draw.list(3, |draw| read::<LampRecord>(&record(draw, LAMP, Known::default()))) {
+    for lamp in draw.list(3, |draw| lamp(draw, textures)) {
         builder.add_lamp(lamp);
     }
     builder.set_camera(camera);
@@ -70,21 +70,34 @@ fn program(draw: &mut Draw<'_>, textures: usize) -> Value {
     Value::Map(entries.map(|(name, value)| (name.into(), value)).to_vec())
 }
 
+fn lamp(draw: &mut Draw<'_>, textures: usize) -> LampRecord {
+    let program = light_program(draw, textures, "factor");
+    let Value::Map(mut entries) = record(draw, LAMP, Known::default()) else { unreachable!("a record") };
+    entries.push(("program".into(), program));
+    read(&Value::Map(entries))
+}
+
+/// A program with one result, or none.
+fn light_program(draw: &mut Draw<'_>, textures: usize, result: &str) -> Value {
+    if !draw.flag() {
+        return Value::Null;
+    }
+    let instructions = instruction_records(draw, 5, textures);
+    let known = Known { registers: instructions.len(), textures };
+    let register = value(draw, Kind::Register, known);
+    let entries = [("instructions", Value::Array(instructions)), (result, register)];
+    Value::Map(entries.map(|(name, value)| (name.into(), value)).to_vec())
+}
+
 fn world(draw: &mut Draw<'_>, textures: usize) -> WorldRecord {
-    let program = draw.flag().then(|| {
-        let instructions = instruction_records(draw, 5, textures);
-        let known = Known { registers: instructions.len(), textures };
-        let radiance = value(draw, Kind::Register, known);
-        let entries = [("instructions", Value::Array(instructions)), ("radiance", radiance)];
-        Value::Map(entries.map(|(name, value)| (name.into(), value)).to_vec())
-    });
+    let program = light_program(draw, textures, "radiance");
     let mut field = |name: &str, kind| (name.into(), value(draw, kind, Known::default()));
     read(&Value::Map(vec![
         field("name", Kind::Name),
         field("radiance", Kind::Numbers(3)),
         field("visibility", Kind::Whole(32)),
         field("film_transparent", Kind::Flag),
-        ("program".into(), program.unwrap_or(Value::Null)),
+        ("program".into(), program),
     ]))
 }
 

@@ -229,6 +229,7 @@ pub const LAMP: Fields = &[
     ("name", Name),
     ("shape", One("kind", LAMP_SHAPES)),
     ("power", Numbers(3)),
+    ("info", Record(OBJECT_INFO)),
     ("world_from_lamp", Matrix),
     ("visibility", Whole(32)),
     ("casts_shadow", Flag),

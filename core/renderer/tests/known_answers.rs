@@ -9,8 +9,9 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 use rgp_renderer::color::Rgb;
-use rgp_renderer::scene::record::{ClosureRecord, MaterialRecord};
+use rgp_renderer::scene::record::{ClosureRecord, LampProgramRecord, LampRecord, MaterialRecord};
 use rgp_renderer::scene::{LampShape, MeshArrays, SceneBuilder};
+use rgp_renderer::shader::{Aside, Instruction, MathFunction, Quantity};
 use support::*;
 
 const PHOTONS: u64 = 400_000;
@@ -32,6 +33,31 @@ fn sphere_with_a_lamp_off_its_center() {
     let exact = albedo / PI * indirect;
     assert_close(mean(&pixels), exact, 0.005);
     assert!(spread(&pixels, exact) < 0.02, "rms {}", spread(&pixels, exact));
+}
+
+/// Nodes multiply the light with the square of its way d: Φ with the mean of d², R² − a² / 3 for a lamp at a from the center,
+/// in place of Φ; the same through a transparent shell around the lamp.
+#[test]
+fn sphere_with_a_lamp_that_does_not_fall_off() {
+    let (albedo, flux, at) = (0.6, 10.0, DVec3::new(0.3, 0.1, 0.55));
+    let ball = sphere(5, 1.0, Vec3::ZERO);
+    let arriving = flux * (1.0 - at.length_squared() / 3.0);
+    let exact = albedo / PI * albedo * arriving / ((1.0 - albedo) * area(&ball));
+    for has_shell in [false, true] {
+        let mut builder = SceneBuilder::default();
+        place(&mut builder, sphere(5, 1.0, Vec3::ZERO), &[diffuse(albedo as f32)]);
+        if has_shell {
+            let shell = material(&[ClosureRecord::Transparent { color: Rgb::WHITE }]);
+            place(&mut builder, sphere(3, 0.2, at.as_vec3()), &[shell]);
+        }
+        let length = Instruction::Geometry { quantity: Quantity::RayLength, aside: Aside::Here };
+        let squared = Instruction::Math { function: MathFunction::Multiply, a: 0, b: 0, c: 0 };
+        let program = LampProgramRecord { instructions: vec![length, squared], factor: 1 };
+        builder.add_lamp(LampRecord { program: Some(program), ..point_lamp(flux as f32, at) });
+        builder.set_camera(camera(DVec3::new(-0.4, 0.1, 0.0), DVec3::X, 2.0, PIXELS));
+        let pixels = finish_and_render(builder, &settings(PHOTONS, RESOLUTION, RAYS)).indirect_radiance();
+        assert_close(mean(&pixels), exact, 0.01);
+    }
 }
 
 /// Albedo ρ₁ above, ρ₂ below, lamp on the axis at height a: u = (1 + a / √(R² + a²)) / 2 of the flux goes up, and

@@ -5,10 +5,13 @@ mod light_support;
 use std::f32::consts::PI;
 
 use glam::Vec3;
-use light_support::{Random, assert_close, irradiance, lamp, object, scene, turned};
+use light_support::{
+    Random, asked, assert_close, irradiance, lamp, object, scene, turned, vector_math, with_nodes,
+};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::light::Lights;
 use rgp_renderer::scene::{Lamp, LampShape, Object};
+use rgp_renderer::shader::{Quantity, VectorFunction};
 
 const POWER: f32 = 10.0;
 const BINS: usize = 8;
@@ -141,7 +144,12 @@ fn cells_on_plane(lights: &Lights, count: u32) -> Vec<Cell> {
         if place.min_element() >= 0.0 && place.max_element() < 1.0 {
             let place = (place * BINS as f32).as_uvec2();
             let cell = &mut cells[place.y as usize * BINS + place.x as usize];
-            let flux = f64::from(photon.flux.0[0]) / f64::from(count);
+            let p = photon.origin + photon.direction * distance;
+            let arrived = lights.arrived(photon.flux, photon.shaded, photon.direction, p);
+            if arrived.0[0] == 0.0 {
+                continue;
+            }
+            let flux = f64::from(arrived.0[0]) / f64::from(count);
             cell.photons += 1;
             cell.flux += flux;
             cell.sigma = cell.sigma.hypot(flux);
@@ -182,10 +190,24 @@ fn assert_photons_match(lights: &Lights, name: &str, parts: usize, choices: usiz
     assert!(chi_squared < lit + 4.0 * (2.0 * lit).sqrt(), "{name}: χ² {chi_squared} for {lit} cells");
 }
 
+/// Nodes that ask for the place on the lamp, its normal and how far it is seen from: (UV + N²) times the distance.
+fn uneven(lamp: Lamp) -> Lamp {
+    let instructions = vec![
+        asked(Quantity::Parametric),
+        asked(Quantity::Normal),
+        vector_math(VectorFunction::Multiply, 1, 1),
+        vector_math(VectorFunction::Add, 0, 2),
+        asked(Quantity::RayLength),
+        vector_math(VectorFunction::Multiply, 3, 4),
+    ];
+    let infinitely_far = matches!(lamp.shape, LampShape::Sun { .. });
+    with_nodes(lamp, if infinitely_far { instructions[..4].to_vec() } else { instructions })
+}
+
 #[test]
 fn photons_light_a_plane_as_direct_sampling_does() {
-    for lamp in lamps() {
-        let name = format!("{:?}", lamp.shape);
+    for lamp in lamps().into_iter().chain(lamps().into_iter().map(uneven)) {
+        let name = format!("{:?}, nodes: {}", lamp.shape, lamp.program.is_some());
         let lights = Lights::build(&scene(vec![lamp], Vec::new(), 0.0), &[]);
         let is_delta = lights.sample_direct(Vec3::new(0.0, 0.0, -0.2), [0.5; 3]).is_none_or(|s| s.is_delta);
         // Edges of what has no extent are sharp on the plane.

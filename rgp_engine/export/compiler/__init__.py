@@ -6,5 +6,6 @@ becomes; `images.py` brings the pixels.
 
 from .compiler import MOST_INSTRUCTIONS, Compiler, Register
 from .displacement import displace
+from .emission import summed
 
-__all__ = ["MOST_INSTRUCTIONS", "Compiler", "Register", "displace"]
+__all__ = ["MOST_INSTRUCTIONS", "Compiler", "Register", "displace", "summed"]

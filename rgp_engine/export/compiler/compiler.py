@@ -1,5 +1,5 @@
-"""Walks a material's or world's nodes backwards from what is asked for, and writes down what has to be computed at
-every hit.
+"""Walks a material's, world's or lamp's nodes backwards from what is asked for, and writes down what has to be
+computed at every hit.
 
 Whatever is constant stays a constant: only nodes behind which something differs from point to point become
 instructions.
@@ -33,10 +33,14 @@ Operand = Value | Register
 
 
 class Compiler(Folder):
-    """Folds what is constant and compiles the rest, for one material or world."""
+    """Folds what is constant and compiles the rest, for one material, world or lamp."""
 
     of_world = False
     """True for a world: positions are directions, and there is no mesh."""
+    of_lamp = False
+    """True for a lamp: there is no mesh, and it is known how far away it is seen from."""
+    is_sun = False
+    """True for a lamp that is infinitely far away."""
 
     def __init__(self, context: "ExportContext", subject: str) -> None:
         super().__init__(subject, context.log)

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ..arithmetic import clamp
+from ..fold import Varying
 from ..ies import UNREADABLE, IesError, web_of
 from ..nodes import Output
 from .images import texture_of, tiles_of, unassociates
@@ -118,9 +119,10 @@ _GEOMETRY = {
 
 
 def _geometry(c: "Compiler", source: Output) -> "Operand | None":
-    if source.b_socket.identifier == "Tangent" and not c.of_world:
+    has_mesh = not (c.of_world or c.of_lamp)
+    if source.b_socket.identifier == "Tangent" and has_mesh:
         return c.emit("tangent", generated=c.generated())
-    if source.b_socket.identifier == "Random Per Island" and not c.of_world:
+    if source.b_socket.identifier == "Random Per Island" and has_mesh:
         return c.attribute("island")
     name = _GEOMETRY.get(source.b_socket.identifier)
     return None if name is None else c.quantity(name)
@@ -153,8 +155,32 @@ _LIGHT_PATH = {
 
 
 def _light_path(c: "Compiler", source: Output) -> "Operand | None":
+    if source.b_socket.identifier == "Ray Length" and c.of_lamp:
+        return c.quantity("ray_length")
     name = _LIGHT_PATH.get(source.b_socket.identifier)
     return None if name is None else c.quantity(name)
+
+
+def _light_falloff(c: "Compiler", source: Output) -> "Operand | None":
+    """Strength, made up for a part of what light of a lamp loses on its way; suns lose nothing."""
+    strength = c.input(source, "Strength")
+    if c.is_sun:
+        return strength
+    length = c.quantity("ray_length")
+    squared = c.math("MULTIPLY", length, length)
+    made_up_for = {"Linear": length, "Constant": squared}.get(source.b_socket.identifier)
+    if made_up_for is not None:
+        strength = c.math("MULTIPLY", strength, made_up_for)
+    smooth = c.math("MAXIMUM", c.input(source, "Smooth"), 0.0)
+    return c.math("MULTIPLY", strength, c.math("DIVIDE", squared, c.math("ADD", smooth, squared)))
+
+
+def _falls_off(c: "Compiler", source: Output) -> bool:
+    """False where the node gives its strength, as everywhere but on lamps."""
+    if not c.of_lamp:
+        return False
+    is_plain = source.b_socket.identifier == "Quadratic" and c.value(source.input("Smooth")) == 0.0
+    return not is_plain or isinstance(c.value(source.input("Strength")), Varying)
 
 
 def _attribute(c: "Compiler", source: Output) -> "Operand | None":
@@ -251,6 +277,7 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
     "NEW_GEOMETRY": _geometry,
     "OBJECT_INFO": _object_info,
     "LIGHT_PATH": _light_path,
+    "LIGHT_FALLOFF": _light_falloff,
     "ATTRIBUTE": _attribute,
     "VERTEX_COLOR": _color_attribute,
     "FRESNEL": _fresnel,
@@ -271,6 +298,7 @@ SOURCES: "dict[str, Callable[[Compiler, Output], bool]]" = {
     "NEW_GEOMETRY": _known(_geometry),
     "OBJECT_INFO": _known(_object_info),
     "LIGHT_PATH": _known(_light_path),
+    "LIGHT_FALLOFF": _falls_off,
     "ATTRIBUTE": _known(_attribute),
     "VERTEX_COLOR": _known(_color_attribute),
 }

@@ -11,6 +11,7 @@ import bpy
 from tests.render import (
     cases,
     catcher_cases,
+    lamp_node_cases,
     linking_cases,
     motion_cases,
     node_cases,
@@ -34,6 +35,10 @@ def features() -> list[Feature]:
     """All that are compared, group by group."""
     return [
         *(Feature(case, partial(cases.build, case)) for case in cases.CASES),
+        *(
+            Feature(f"lamp_node/{name}", partial(lamp_node_cases.build, name))
+            for name in lamp_node_cases.LAMPS
+        ),
         *(Feature(f"world/{name}", partial(world_cases.build, name)) for name in world_cases.WORLDS),
         *(Feature(f"path/{name}", partial(path_cases.build, name)) for name in path_cases.PATHS),
         *(Feature(f"motion/{name}", partial(motion_cases.build, name)) for name in motion_cases.MOTIONS),

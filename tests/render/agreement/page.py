@@ -16,6 +16,7 @@ from .sheet import contact_sheet
 
 TITLES = {
     "lamp": "Lamps and the world",
+    "lamp_node": "Lamps with nodes",
     "world": "Worlds that differ from direction to direction",
     "material": "Shaders, under an even world and under a square lamp",
     "path": "Ways of light",

@@ -131,6 +131,7 @@ impl<'a> Auditor<'a> {
             sets: u32::MAX,
             width,
             mapped: Rgb::WHITE,
+            moved: 0.0,
         };
         let met = g.meet(ray, Some(Some(hit)), sampled, &mut rng, &mut traces.meter, &mut end);
         let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };

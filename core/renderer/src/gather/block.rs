@@ -46,6 +46,8 @@ pub(super) struct Block<'a, 'g, E: Estimator> {
     pub(super) packet: Packet,
     /// How far from the lens each camera ray starts.
     start: [f32; LANES],
+    /// See [`CameraRay`].
+    moved: [f32; LANES],
     /// Of the packet: gather rays that did not start on a constant Lambert surface.
     pub(super) others: [Option<GatherRay>; LANES],
     pub(super) traces: Traces<E::Place>,
@@ -66,6 +68,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             samples: [PixelSample::default(); LANES],
             packet: Packet::default(),
             start: [0.0; LANES],
+            moved: [0.0; LANES],
             others: [None; LANES],
             traces: Traces::default(),
         }
@@ -132,7 +135,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             let offset = DVec2::new(f64::from(offset[0]), f64::from(offset[1]));
             let position = DVec2::new(f64::from(frame_x), f64::from(frame_y)) + 0.5 + offset;
             let time = if g.lit.plan.motion_blur { self.time(lane) } else { MIDDLE };
-            let CameraRay { ray, reach, start } = match &g.lens {
+            let CameraRay { ray, reach, start, moved } = match &g.lens {
                 None => camera_ray(camera, g.lit, position, None, time),
                 Some(lens) => {
                     let owner = self.traces.meter.enter(Effect::DepthOfField);
@@ -141,7 +144,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
                     camera_ray(camera, g.lit, position, Some((lens, point)), time)
                 }
             };
-            self.start[lane] = start;
+            (self.start[lane], self.moved[lane]) = (start, moved);
             self.packet.set(lane, &ray, reach);
         }
         self.seeds = PixelSeeds::new(&seeds);
@@ -198,6 +201,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let g = self.gatherer;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.sample) << 16 | 1));
         let mut sampled = Sampled::by_camera(g.camera_width.after(self.start[lane]));
+        sampled.moved = self.moved[lane];
         let owner = self.traces.meter.owner();
         let (mut first, mut throughput) = (Some(hit), Rgb::WHITE);
         let transparent_film = g.lit.accel.scene().world.film_transparent;
@@ -229,7 +233,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             self.traces.meter.count(Effect::MirrorsAndGlass, 1);
             throughput *= sample.weight;
             (sampled.kind, sampled.sets) = (ray_kind(&sample), surface.sets);
-            sampled.width = sampled.width.after(met.distance);
+            (sampled.width, sampled.moved) = (sampled.width.after(met.distance), 0.0);
             ray = surface.leaving(sample.wi, sampled.kind | g.lit.accel.lamp_bit());
             self.traces.rays.camera += 1;
         }

@@ -16,6 +16,8 @@ pub(super) struct CameraRay {
     pub(super) reach: f32,
     /// How far from the lens it starts.
     pub(super) start: f32,
+    /// How far that is from the near clip plane.
+    pub(super) moved: f32,
 }
 
 /// The ray through `position` of the full frame (pixels from its bottom left), and through a point of the lens if there is
@@ -50,7 +52,7 @@ pub(super) fn camera_ray(
     let (ray, moved) = lit.entering(start, (direction / length).as_vec3(), mask, time);
     #[expect(clippy::cast_possible_truncation, reason = "rays are traced in f32")]
     let [reach, start] = [((far - near) * length) as f32 - moved, (near * length) as f32 + moved];
-    CameraRay { ray, reach: reach.max(0.0), start }
+    CameraRay { ray, reach: reach.max(0.0), start, moved }
 }
 
 /// The width of a camera sample: the area of a pixel, and that of its blur, dealt out to the samples.

@@ -45,6 +45,8 @@ pub(super) struct Sampled {
     pub(super) width: Width,
     /// What lights count whose caustics are made of photons.
     pub(super) mapped: Rgb,
+    /// Distance from where the ray began to where it is traced from.
+    pub(super) moved: f32,
 }
 
 impl Sampled {
@@ -59,11 +61,12 @@ impl Sampled {
             sets: u32::MAX,
             width,
             mapped: Rgb::WHITE,
+            moved: 0.0,
         }
     }
 
     fn sight(&self) -> Sight {
-        Sight { kind: self.kind, mapped: self.mapped }
+        Sight { kind: self.kind, mapped: self.mapped, moved: self.moved }
     }
 
     /// What it left, at `p`.
@@ -272,8 +275,8 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             let pdf = (!sample.is_delta).then_some(sample.pdf_solid_angle);
             let lit_side = surface.bsdf.lit_side();
             let (shares, width) = (Shares::EVEN, Width::NONE);
-            let (sets, mapped) = (surface.sets, on_the_way);
-            let sampled = Sampled { pdf, shares, kind, light, lit_side, sets, width, mapped };
+            let (sets, mapped, moved) = (surface.sets, on_the_way, 0.0);
+            let sampled = Sampled { pdf, shares, kind, light, lit_side, sets, width, mapped, moved };
             let met = self.meet(ray, Some(hit), sampled, rng, &mut target.traces.meter, end);
             if light.is_some() {
                 radiance += throughput * met.light;

@@ -158,6 +158,7 @@ impl<E: Estimator> Block<'_, '_, E> {
             sets,
             width: Width::of_solid_angle(solid_angle),
             mapped: Rgb::WHITE,
+            moved: 0.0,
         }
     }
 

@@ -174,7 +174,12 @@ impl AreaLamp {
         }
         let radiance = self.radiance(offset, height);
         let pdf = self.pdf(&self.region(foot, height)?, distance, height);
-        (!radiance.is_black()).then_some(Crossing { radiance, pdf })
+        (!radiance.is_black()).then_some(Crossing { radiance, pdf, distance })
+    }
+
+    /// Distance from `p` to the lamp's plane along a line that meets it.
+    pub(super) fn distance_along(&self, p: Vec3, wi: Vec3) -> f32 {
+        self.local(p).1 / -wi.dot(self.normal)
     }
 
     /// A photon; every one carries the lamp's whole flux.

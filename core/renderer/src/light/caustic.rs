@@ -37,11 +37,13 @@ pub struct Sight {
     pub kind: u32,
     /// What lights count whose caustics are made of photons: less than 1 where these have brought it already.
     pub mapped: Rgb,
+    /// Distance from where the ray began to where it is traced from, which nodes of lamps may ask about.
+    pub moved: f32,
 }
 
 impl From<u32> for Sight {
     fn from(kind: u32) -> Self {
-        Self { kind, mapped: Rgb::WHITE }
+        Self { kind, mapped: Rgb::WHITE, moved: 0.0 }
     }
 }
 

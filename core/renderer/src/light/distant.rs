@@ -32,6 +32,11 @@ impl SceneBall {
         PI * self.radius * self.radius
     }
 
+    /// How far the scene reaches from a point.
+    pub(super) fn reach_from(&self, p: Vec3) -> f32 {
+        (p - self.center).length() + self.radius
+    }
+
     /// The numbers from which [`SceneBall::photon`] makes one along `direction` through `p`.
     pub(super) fn position_through(&self, p: Vec3, direction: Vec3) -> [f32; 2] {
         let across = Frame::new(direction).to_local(p - self.center).truncate();

@@ -187,6 +187,7 @@ impl Point for Sight {
             Quantity::IsTransmission => self.is(visibility::TRANSMISSION),
             Quantity::Parametric
             | Quantity::Backfacing
+            | Quantity::RayLength
             | Quantity::ObjectLocation
             | Quantity::ObjectColor
             | Quantity::ObjectIndex

@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::caustic::Sight;
+use super::lamp_shader::Look;
 use super::shape::Shape;
 use super::{Lights, Ray, Receiver};
 use crate::color::Rgb;
@@ -69,8 +70,10 @@ impl Lights {
                 Shape::Sun(_) | Shape::Mesh(_) => None,
             };
             if let Some(crossing) = crossing {
-                let radiance = crossing.radiance * self.share(index, sight);
-                each(radiance, self.pdf_against(&receiver, index, crossing.pdf));
+                let distance = crossing.distance;
+                let look = Look { from: ray.from, wi, distance, before: sight.moved };
+                let radiance = light.shown(crossing.radiance, &look);
+                each(radiance * self.share(index, sight), self.pdf_against(&receiver, index, crossing.pdf));
             }
         }
     }
@@ -99,8 +102,10 @@ impl Lights {
                 continue;
             }
             if let Some(crossing) = lamp.crossing(wi) {
-                let radiance = crossing.radiance * self.share(index, sight);
-                each(radiance, self.pdf_against(&receiver, index, crossing.pdf));
+                let distance = crossing.distance;
+                let look = Look { from: receiver.p, wi, distance, before: sight.moved };
+                let radiance = light.shown(crossing.radiance, &look);
+                each(radiance * self.share(index, sight), self.pdf_against(&receiver, index, crossing.pdf));
             }
         }
     }

@@ -2,7 +2,7 @@
 //! their direct light ([`Lights::sample_direct`]), and rays that meet a light by chance ask what they see and how likely
 //! the other way of finding it was ([`Lights::emitter_pdf`], [`Lights::lamps_crossed`], [`Lights::suns`]).
 //!
-//! All is in scene space. Lamps have Blender's units and agree with Cycles: see each file for its formulas.
+//! Lamps whose nodes compute their light are in `lamp_shader.rs`. All is in scene space. Lamps have Blender's units and agree with Cycles: see each file for its formulas.
 
 mod aim;
 mod area;
@@ -14,6 +14,7 @@ mod distant;
 mod emitter;
 mod environment;
 mod far;
+mod lamp_shader;
 mod met;
 mod outline;
 mod point;
@@ -44,6 +45,7 @@ use distant::SceneBall;
 pub use emitter::EmitterPoint;
 use emitter::MeshEmitter;
 pub use environment::Environment;
+use lamp_shader::Look;
 use outline::Outlines;
 pub use proxy::LampProxy;
 use select::{Cdf, Choice};
@@ -82,6 +84,8 @@ pub struct Emission {
     pub visibility: u32,
     /// Where it leaves an emissive mesh.
     pub point: Option<EmitterPoint>,
+    /// The light, where it is a lamp whose nodes decide what arrives, see [`Lights::arrived`].
+    pub shaded: Option<usize>,
 }
 
 impl Emission {
@@ -165,6 +169,8 @@ struct Ray {
 struct Crossing {
     radiance: Rgb,
     pdf: f32,
+    /// From where the ray starts; infinite for suns.
+    distance: f32,
 }
 
 /// What direct light is chosen among: a lamp, or a triangle of an emissive mesh.
@@ -223,12 +229,9 @@ impl Lights {
         environment: Option<Environment>,
     ) -> Self {
         let emission: Vec<Rgb> = emission.iter().map(|&radiance| positive(radiance)).collect();
-        let mut lights: Vec<Light> = scene
-            .lamps
-            .iter()
-            .enumerate()
-            .filter_map(|(index, lamp)| Light::from_lamp(index, lamp))
-            .collect();
+        let ball = SceneBall::new(scene.bounds);
+        let mut lights: Vec<Light> =
+            (0..scene.lamps.len()).filter_map(|index| Light::from_lamp(index, scene, &ball)).collect();
         let mut light_of_object = vec![None; scene.objects.len()];
         for ((number, object), light) in (0..).zip(&scene.objects).zip(&mut light_of_object) {
             if let Some(emitter) = MeshEmitter::new(number, object, &emission) {
@@ -236,6 +239,7 @@ impl Lights {
                 let shape = Shape::Mesh(emitter);
                 lights.push(Light {
                     shape,
+                    shader: None,
                     lamp: None,
                     blockers: object.links.shadow_mask(true),
                     receivers: object.links.receivers,
@@ -243,7 +247,6 @@ impl Lights {
                 });
             }
         }
-        let ball = SceneBall::new(scene.bounds);
         let world = WorldLight::new(world, environment);
         let mut fluxes: Vec<Rgb> = lights.iter().map(|light| light.flux(&ball)).collect();
         fluxes.push(world.flux(&ball));
@@ -362,12 +365,9 @@ impl Lights {
         let [x, y, d0, d1] = numbers;
         let (position, direction) = ([x, y], [d0, d1]);
         let light = self.lights.get(index);
-        let photon = match light.map(|light| &light.shape) {
+        let photon = match light {
             None => self.world.emit(&self.ball, position, direction),
-            Some(Shape::Point(lamp)) => lamp.emit(position, direction),
-            Some(Shape::Area(lamp)) => lamp.emit(position, direction),
-            Some(Shape::Sun(lamp)) => lamp.emit(&self.ball, position, direction),
-            Some(Shape::Mesh(mesh)) => mesh.emit(choice, position, direction),
+            Some(light) => light.shape.emit(&self.ball, choice, position, direction),
         };
         Emission {
             origin: photon.origin,
@@ -380,7 +380,18 @@ impl Lights {
             lamp: light.and_then(|light| light.lamp),
             visibility: light.map_or(self.world.visibility, |light| light.visibility),
             point: photon.point,
+            shaded: light.filter(|light| light.shader.is_some()).map(|_| index),
         }
+    }
+
+    /// Flux of a photon that has come straight from its light to `p`: what it left with, or what the nodes of its lamp make of
+    /// that.
+    #[inline]
+    #[must_use]
+    pub fn arrived(&self, flux: Rgb, shaded: Option<usize>, direction: Vec3, p: Vec3) -> Rgb {
+        let Some(light) = shaded.map(|light| &self.lights[light]) else { return flux };
+        let (wi, distance) = (-direction, light.shape.distance(p, -direction));
+        light.shown(flux, &Look { from: p, wi, distance, before: 0.0 })
     }
 
     /// A direction from the receiver towards a lamp, an emissive triangle or a world that is not the same on all sides:
@@ -409,10 +420,15 @@ impl Lights {
             Shape::Sun(lamp) => lamp.sample(position),
             Shape::Mesh(mesh) => mesh.sample(p, emitter.triangle as usize, position)?,
         };
+        let look = Look { from: p, wi: sample.wi, distance: sample.distance, before: 0.0 };
+        let radiance_over_pdf = light.shown(sample.radiance_over_pdf, &look);
+        if light.shader.is_some() && radiance_over_pdf.is_black() {
+            return None;
+        }
         Some(DirectSample {
             wi: sample.wi,
             distance: sample.distance,
-            radiance_over_pdf: sample.radiance_over_pdf / probability,
+            radiance_over_pdf: radiance_over_pdf / probability,
             pdf_solid_angle: sample.pdf * probability,
             is_delta: sample.is_delta || light.is_left_to_sampling(),
             blockers: light.blockers,

@@ -127,7 +127,16 @@ impl PointLamp {
             (self.distance(to.length(), height), self.attenuation(-ray.wi), 1.0 / (TAU * visible))
         };
         let radiance = self.radiance() * attenuation;
-        (ray.span.contains(&distance) && !radiance.is_black()).then_some(Crossing { radiance, pdf })
+        (ray.span.contains(&distance) && !radiance.is_black()).then_some(Crossing { radiance, pdf, distance })
+    }
+
+    /// Distance from `p` to the lamp along a line that meets it but for rounding.
+    pub(super) fn distance_along(&self, p: Vec3, wi: Vec3) -> f32 {
+        let to = self.center - p;
+        if self.is_inside(to) {
+            return self.distance_inside(to, wi);
+        }
+        self.distance(to.length(), warp::one_minus_cos(to.try_normalize().unwrap_or(Vec3::Z), wi))
     }
 
     /// A photon; it carries the lamp's whole flux, or about it if a stretched cone has to be weighted.

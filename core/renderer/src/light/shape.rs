@@ -1,16 +1,19 @@
 //! One light of any kind.
 
+use glam::Vec3;
+
 use super::area::AreaLamp;
 use super::cluster::Bounds;
 use super::distant::SceneBall;
 use super::emitter::MeshEmitter;
+use super::lamp_shader::{LampShader, Look};
 use super::point::PointLamp;
 use super::proxy::Hull;
 use super::spot::SpotCone;
 use super::sun::SunLamp;
-use super::{is_in_reach, positive};
+use super::{Photon, is_in_reach, positive};
 use crate::color::Rgb;
-use crate::scene::{Lamp, LampShape, visibility};
+use crate::scene::{Lamp, LampShape, Scene, visibility};
 
 /// The kinds of light a surface can ask for.
 pub(super) enum Shape {
@@ -20,9 +23,64 @@ pub(super) enum Shape {
     Mesh(MeshEmitter),
 }
 
+impl Shape {
+    /// `None` for a lamp without size or direction.
+    fn of_lamp(lamp: &Lamp) -> Option<Self> {
+        Some(match lamp.shape {
+            LampShape::Point { radius, soft_falloff } => {
+                Self::Point(PointLamp::new(lamp, radius, soft_falloff, None)?)
+            }
+            LampShape::Spot { radius, soft_falloff, cone_angle, blend } => {
+                let cone = SpotCone::new(lamp, cone_angle, blend)?;
+                Self::Point(PointLamp::new(lamp, radius, soft_falloff, Some(cone))?)
+            }
+            LampShape::Sun { angle } => Self::Sun(SunLamp::new(lamp, angle)?),
+            LampShape::Rectangle { size, spread } => Self::Area(AreaLamp::new(lamp, size, spread, false)?),
+            LampShape::Ellipse { size, spread } => Self::Area(AreaLamp::new(lamp, size, spread, true)?),
+        })
+    }
+
+    /// Emitted flux.
+    pub(super) fn flux(&self, ball: &SceneBall) -> Rgb {
+        match self {
+            Self::Point(lamp) => lamp.flux(),
+            Self::Area(lamp) => lamp.flux(),
+            Self::Sun(lamp) => lamp.flux(ball),
+            Self::Mesh(mesh) => mesh.flux(),
+        }
+    }
+
+    /// A photon; `choice` is for lights of many parts.
+    pub(super) fn emit(
+        &self,
+        ball: &SceneBall,
+        choice: f32,
+        position: [f32; 2],
+        direction: [f32; 2],
+    ) -> Photon {
+        match self {
+            Self::Point(lamp) => lamp.emit(position, direction),
+            Self::Area(lamp) => lamp.emit(position, direction),
+            Self::Sun(lamp) => lamp.emit(ball, position, direction),
+            Self::Mesh(mesh) => mesh.emit(choice, position, direction),
+        }
+    }
+
+    /// Distance from a point to where the lamp shines on it along a line.
+    pub(super) fn distance(&self, from: Vec3, wi: Vec3) -> f32 {
+        match self {
+            Self::Point(lamp) => lamp.distance_along(from, wi),
+            Self::Area(lamp) => lamp.distance_along(from, wi),
+            Self::Sun(_) | Self::Mesh(_) => f32::INFINITY,
+        }
+    }
+}
+
 /// A light and what the renderer must know of it.
 pub(super) struct Light {
     pub shape: Shape,
+    /// What computes the light of a lamp, where that is not the same everywhere.
+    pub shader: Option<Box<LampShader>>,
     /// Index into the scene's lamps; `None` for a mesh.
     pub lamp: Option<usize>,
     /// Mask of shadow rays; 0 where the light passes through everything.
@@ -34,25 +92,20 @@ pub(super) struct Light {
 
 impl Light {
     /// `None` for a lamp that gives no light.
-    pub(super) fn from_lamp(index: usize, lamp: &Lamp) -> Option<Self> {
+    pub(super) fn from_lamp(index: usize, scene: &Scene, ball: &SceneBall) -> Option<Self> {
+        let lamp = &scene.lamps[index];
         let lamp = &Lamp { power: positive(lamp.power), ..lamp.clone() };
         if lamp.power.is_black() || !is_in_reach(lamp.position) {
             return None;
         }
-        let shape = match lamp.shape {
-            LampShape::Point { radius, soft_falloff } => {
-                Shape::Point(PointLamp::new(lamp, radius, soft_falloff, None)?)
-            }
-            LampShape::Spot { radius, soft_falloff, cone_angle, blend } => {
-                let cone = SpotCone::new(lamp, cone_angle, blend)?;
-                Shape::Point(PointLamp::new(lamp, radius, soft_falloff, Some(cone))?)
-            }
-            LampShape::Sun { angle } => Shape::Sun(SunLamp::new(lamp, angle)?),
-            LampShape::Rectangle { size, spread } => Shape::Area(AreaLamp::new(lamp, size, spread, false)?),
-            LampShape::Ellipse { size, spread } => Shape::Area(AreaLamp::new(lamp, size, spread, true)?),
-        };
+        let mut shape = Shape::of_lamp(lamp)?;
+        let shader = LampShader::new(lamp, &shape, scene, ball).map(Box::new);
+        if let Some(shader) = &shader {
+            shape = Shape::of_lamp(&Lamp { power: Rgb::splat(shader.taken_for()), ..lamp.clone() })?;
+        }
         Some(Self {
             shape,
+            shader,
             lamp: Some(index),
             blockers: lamp.links.shadow_mask(lamp.casts_shadow),
             receivers: lamp.links.receivers,
@@ -61,11 +114,16 @@ impl Light {
     }
 
     pub(super) fn flux(&self, ball: &SceneBall) -> Rgb {
-        match &self.shape {
-            Shape::Point(lamp) => lamp.flux(),
-            Shape::Area(lamp) => lamp.flux(),
-            Shape::Sun(lamp) => lamp.flux(ball),
-            Shape::Mesh(mesh) => mesh.flux(),
+        let flux = self.shape.flux(ball);
+        self.shader.as_ref().map_or(flux, |shader| shader.on_average(flux))
+    }
+
+    /// Light of its shape as it is seen along a ray.
+    #[inline]
+    pub(super) fn shown(&self, light: Rgb, look: &Look) -> Rgb {
+        match &self.shader {
+            None => light,
+            Some(shader) => shader.shown(light, look),
         }
     }
 

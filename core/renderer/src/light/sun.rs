@@ -80,8 +80,11 @@ impl SunLamp {
 
     /// What a ray that leaves the scene along `wi` sees of the sun.
     pub(super) fn crossing(&self, wi: Vec3) -> Option<Crossing> {
-        (warp::one_minus_cos(self.towards, wi) <= self.cone)
-            .then(|| Crossing { radiance: self.radiance(), pdf: 1.0 / (TAU * self.cone) })
+        (warp::one_minus_cos(self.towards, wi) <= self.cone).then(|| Crossing {
+            radiance: self.radiance(),
+            pdf: 1.0 / (TAU * self.cone),
+            distance: f32::INFINITY,
+        })
     }
 
     /// A photon; every one carries the whole flux into the ball.

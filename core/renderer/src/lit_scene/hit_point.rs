@@ -161,6 +161,7 @@ impl Point for HitPoint<'_> {
             Quantity::ObjectColor => Value { v: Vec4::from_array(self.object.info.color), width: 0.0 },
             Quantity::ObjectIndex => number(self.object.info.index),
             Quantity::ObjectRandom => number(self.object.info.random),
+            Quantity::RayLength => Value::default(),
             Quantity::IsCamera => number(self.kind(visibility::CAMERA)),
             Quantity::IsShadow => number(self.kind(visibility::SHADOW | visibility::BLOCKERS)),
             Quantity::IsDiffuse => number(self.kind(visibility::DIFFUSE)),

@@ -171,7 +171,8 @@ impl<S: PhotonSink> Tracer<'_, S> {
             let visible_to = self.lit.accel.scene().objects[hit.object as usize].visibility;
             let is_blocked = visible_to & emission.blockers != 0;
             if travelled >= emission.lit_from && visible_to & visibility::DIFFUSE != 0 {
-                let arrival = Arrival { ray, hit, flux, lobes, sets: emission.receivers, is_blocked };
+                let (sets, shaded) = (emission.receivers, emission.shaded);
+                let arrival = Arrival { ray, hit, flux, lobes, sets, shaded, is_blocked };
                 segments += self.scatter(arrival, &mut sampler, landed, meter);
             }
             if is_blocked {
@@ -192,20 +193,22 @@ impl<S: PhotonSink> Tracer<'_, S> {
         meter: &mut Meter,
     ) -> u64 {
         let (mut segments, mut thrown) = (0, self.carry == Carry::All);
-        let Arrival { mut ray, mut hit, mut flux, lobes: mut lit, mut sets, is_blocked: mut passes } =
-            arrival;
+        let Arrival { mut ray, mut hit, mut flux, lobes: mut lit, mut sets, mut shaded, .. } = arrival;
+        let mut passes = arrival.is_blocked;
         for _ in 0..self.max_depth {
             let surface = self.lit.surface(&ray, hit, 0.0);
             let bsdf = &surface.bsdf;
             let lobes = if sets & surface.sets == 0 { LobeSet::EMPTY } else { lit };
-            if thrown && bsdf.has(lobes.and(LobeSet::READ)) {
+            let arrived = self.lit.lights.arrived(flux, shaded, ray.direction, surface.p);
+            let is_dark = shaded.is_some() && arrived.is_black();
+            if thrown && !is_dark && bsdf.has(lobes.and(LobeSet::READ)) {
                 let glossy = self.carry == Carry::All && bsdf.has(lobes.and(LobeSet::ROUGH));
                 let at = if glossy { [sampler.draw(), sampler.draw()] } else { [0.0; 2] };
                 let glossy = glossy && self.lit.plan.direction_bins();
                 let at_rest = self.lit.moves(hit.object).then(|| self.lit.at_rest(&surface));
                 let (stored, grown) =
                     at_rest.as_ref().map_or((&surface, 1.0), |(at_rest, grown)| (at_rest, *grown));
-                let flux = flux * (bsdf.frame.irradiance_factor(-ray.direction) * grown);
+                let flux = arrived * (bsdf.frame.irradiance_factor(-ray.direction) * grown);
                 let landing = Landing { surface: stored, set: self.set, flux, glossy, at };
                 let owner = meter.enter_if(glossy.then_some(Effect::IndirectGlossy));
                 self.sink.land(landed, &landing);
@@ -223,6 +226,12 @@ impl<S: PhotonSink> Tracer<'_, S> {
             // Flux over index squared is what refraction conserves.
             let survival = (next.weight.max_channel() * next.eta_squared).min(MAX_SURVIVAL);
             if sampler.draw() >= survival {
+                break;
+            }
+            if !next.straight {
+                (flux, shaded) = (arrived, None);
+            }
+            if is_dark && shaded.is_none() {
                 break;
             }
             flux = flux * next.weight * (1.0 / survival);
@@ -287,6 +296,8 @@ struct Arrival {
     /// Lobes that it lights, and the sets of objects that it lights.
     lobes: LobeSet,
     sets: u32,
+    /// See [`crate::light::Emission`]; the flux is that before the lamp's nodes.
+    shaded: Option<usize>,
     /// False: it goes on behind the surface as if that were not there.
     is_blocked: bool,
 }

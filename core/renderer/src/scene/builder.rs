@@ -8,16 +8,16 @@ use glam::{DAffine3, DMat4, DVec3, Vec3};
 use super::equipment::{place_camera, place_lamp};
 use super::mesh::{self, MeshArrays, is_step_count};
 use super::record::{
-    CameraRecord, LampRecord, MaterialRecord, ObjectInfo, ObjectLinks, WorldProgramRecord, WorldRecord,
-    visibility,
+    CameraRecord, LampProgramRecord, LampRecord, MaterialRecord, ObjectInfo, ObjectLinks, WorldProgramRecord,
+    WorldRecord, matrix, visibility,
 };
 use super::{
-    LARGEST, Lamp, Material, MaterialProgram, Mesh, Object, Problem, Scene, SceneSpace, World, WorldProgram,
-    motion,
+    LARGEST, Lamp, LampProgram, Material, MaterialProgram, Mesh, Object, Problem, Scene, SceneSpace, World,
+    WorldProgram, motion,
 };
 use crate::color::Rgb;
 use crate::error::RenderError;
-use crate::shader::{Program, Texture};
+use crate::shader::{Instruction, Program, Register, Texture};
 
 #[derive(Debug)]
 struct ObjectRecord {
@@ -202,7 +202,7 @@ impl SceneBuilder {
     /// Checks everything and moves it into scene space.
     ///
     /// # Errors
-    /// No camera, or a camera that cannot see; a material whose program cannot be run.
+    /// No camera, or a camera that cannot see; a program that cannot be run.
     pub fn finish(mut self) -> Result<Scene, RenderError> {
         let camera = self.camera.take().ok_or_else(|| {
             RenderError::Scene("the scene has no camera; add one and make it the active camera".into())
@@ -212,7 +212,7 @@ impl SceneBuilder {
         self.keep_usable_objects(&bounds);
         let space = self.measure(&bounds);
         let camera = place_camera(&camera, &space)?;
-        let lamps = self.place_lamps(&space);
+        let lamps = self.place_lamps(&space)?;
         let objects = self.place_objects(&space);
         let materials = self.take_materials()?;
         let bounds = bounds_of(&objects);
@@ -324,14 +324,21 @@ impl SceneBuilder {
         placed
     }
 
-    fn place_lamps(&mut self, space: &SceneSpace) -> Vec<Lamp> {
+    fn place_lamps(&mut self, space: &SceneSpace) -> Result<Vec<Lamp>, RenderError> {
         let mut lamps = Vec::new();
-        for record in std::mem::take(&mut self.lamps) {
-            if let Some(lamp) = place_lamp(record, space, &mut self.problems) {
-                lamps.push(lamp);
+        for mut record in std::mem::take(&mut self.lamps) {
+            let (program, info) = (record.program.take(), record.info);
+            let world_from_lamp = DAffine3::from_mat4(matrix(&record.world_from_lamp));
+            let Some(mut lamp) = place_lamp(record, space, &mut self.problems) else { continue };
+            if let Some(LampProgramRecord { instructions, factor }) = program {
+                let subject = format!("lamp '{}'", lamp.name);
+                let program = checked_program(&subject, instructions, factor, self.textures.len())?;
+                let lamp_from_world = world_from_lamp.inverse();
+                lamp.program = Some(LampProgram { program, factor, info, lamp_from_world });
             }
+            lamps.push(lamp);
         }
-        lamps
+        Ok(lamps)
     }
 
     fn take_world(&mut self) -> Result<World, RenderError> {
@@ -342,7 +349,11 @@ impl SceneBuilder {
         }
         let radiance = if radiance.is_finite() { radiance.map(|c| c.max(0.0)) } else { Rgb::BLACK };
         let textures = self.textures.len();
-        let program = program.map(|record| checked_world_program(record, &name, textures)).transpose()?;
+        let checked = |WorldProgramRecord { instructions, radiance }| {
+            let program = checked_program(&format!("world '{name}'"), instructions, radiance, textures)?;
+            Ok::<_, RenderError>(WorldProgram { program, radiance })
+        };
+        let program = program.map(checked).transpose()?;
         Ok(World { name, radiance, program, visibility, film_transparent })
     }
 
@@ -353,17 +364,19 @@ impl SceneBuilder {
     }
 }
 
-fn checked_world_program(
-    record: WorldProgramRecord,
-    name: &str,
+/// A program with a result of this number.
+fn checked_program(
+    subject: &str,
+    instructions: Vec<Instruction>,
+    result: Register,
     textures: usize,
-) -> Result<WorldProgram, RenderError> {
-    let fault = |what: String| RenderError::Scene(format!("world '{name}': {what}"));
-    let program = Program::new(record.instructions, textures).map_err(fault)?;
-    if record.radiance as usize >= program.len() {
-        return Err(fault(format!("its program has no register {}", record.radiance)));
+) -> Result<Program, RenderError> {
+    let fault = |what: String| RenderError::Scene(format!("{subject}: {what}"));
+    let program = Program::new(instructions, textures).map_err(fault)?;
+    if result as usize >= program.len() {
+        return Err(fault(format!("its program has no register {result}")));
     }
-    Ok(WorldProgram { program, radiance: record.radiance })
+    Ok(program)
 }
 
 fn checked_material(record: MaterialRecord, textures: usize) -> Result<Material, RenderError> {

@@ -137,6 +137,7 @@ pub(super) fn place_lamp(record: LampRecord, space: &SceneSpace, problems: &mut 
         name: record.name,
         shape,
         power,
+        program: None,
         position: space.scene_from_world().transform_point3(transform.translation).as_vec3(),
         x_axis: x.as_vec3(),
         y_axis: y.as_vec3(),

@@ -6,6 +6,7 @@
 
 mod builder;
 mod equipment;
+mod lamp;
 mod layer;
 mod lens;
 mod links;
@@ -18,6 +19,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3, Vec3};
 
 pub use builder::SceneBuilder;
+pub use lamp::LampProgram;
 pub use layer::CornerLayer;
 pub use lens::Lens;
 pub use links::{LightLinks, ObjectLinks};
@@ -199,6 +201,8 @@ pub struct Lamp {
     pub shape: LampShape,
     /// Power per channel times the squared length scale (see the module); for a sun irradiance (W·m⁻²).
     pub power: Rgb,
+    /// What computes a factor of the power, where that is no constant.
+    pub program: Option<LampProgram>,
     /// Position.
     pub position: Vec3,
     /// Unit vectors: the lamp's local x and y, and `axis`, the direction it shines in (local −Z).

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use crate::color::Rgb;
 use crate::shader::{Instruction, Register};
 
+pub use super::lamp::{LampProgramRecord, LampRecord, LampShape};
 pub use super::lens::LensRecord;
 pub use super::links::{LightLinks, ObjectLinks};
 
@@ -338,70 +339,6 @@ impl Default for ObjectInfo {
     fn default() -> Self {
         Self { color: [1.0; 4], index: 0.0, random: 0.0 }
     }
-}
-
-/// Shape of a lamp and what depends on it. Emission is along local −Z, as Blender's lamps are.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum LampShape {
-    /// Blender's point light.
-    Point {
-        /// Radius (m); 0 is a true point.
-        radius: f32,
-        /// True: a disk turned towards whoever looks at it; false: a sphere.
-        soft_falloff: bool,
-    },
-    /// Blender's spot light.
-    Spot {
-        /// Radius (m).
-        radius: f32,
-        /// As for the point light.
-        soft_falloff: bool,
-        /// Full cone angle (rad).
-        cone_angle: f32,
-        /// Blender's blend, 0 to 1.
-        blend: f32,
-    },
-    /// Light from infinitely far away.
-    Sun {
-        /// Angular diameter (rad).
-        angle: f32,
-    },
-    /// One-sided rectangle in the local xy plane.
-    Rectangle {
-        /// Sides (m), before the object's scale.
-        size: [f32; 2],
-        /// Full spread angle (rad), π for a Lambertian lamp.
-        spread: f32,
-    },
-    /// One-sided ellipse in the local xy plane.
-    Ellipse {
-        /// Diameters (m), before the object's scale.
-        size: [f32; 2],
-        /// Full spread angle (rad).
-        spread: f32,
-    },
-}
-
-/// A lamp.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LampRecord {
-    /// Blender's name, for messages.
-    pub name: String,
-    /// Shape.
-    pub shape: LampShape,
-    /// Blender's power × colour × 2^exposure: watts per channel, for a sun irradiance (W·m⁻²).
-    pub power: Rgb,
-    /// Local to world; columns as Blender's `matrix_world`, row-major in the record.
-    pub world_from_lamp: [[f64; 4]; 4],
-    /// Ray kinds that see the lamp's own shape.
-    pub visibility: u32,
-    /// False: its light passes through everything.
-    pub casts_shadow: bool,
-    /// What it lights.
-    #[serde(default)]
-    pub links: LightLinks,
 }
 
 /// How the image plane is projected.

@@ -72,6 +72,8 @@ pub enum Quantity {
     ObjectIndex,
     /// A random number of the object, 0 to 1.
     ObjectRandom,
+    /// How far it is seen from (m); known of lamps alone.
+    RayLength,
     /// 1 for rays from the camera.
     IsCamera,
     /// 1 for shadow rays.

@@ -26,7 +26,7 @@ pub use arithmetic::{BlendMode, MathFunction, VectorFunction};
 pub use cell_hash::CellHash;
 pub use instruction::{Aside, Instruction, MOST_INSTRUCTIONS, NormalSpace, Quantity, Register, Tile};
 pub use noise::Fractal;
-pub use panorama::Projection;
+pub use panorama::{Projection, around};
 pub use pattern::{GradientShape, Pattern, VoronoiOutput, WaveDirection, WaveProfile};
 pub use photometry::PhotometricWeb;
 pub use texture::{Encoding, Extension, Interpolation, Pixels, Texture};

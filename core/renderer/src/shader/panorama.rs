@@ -34,13 +34,21 @@ pub(super) fn place(direction: Value, projection: Projection) -> Value {
     let [u, v] = match projection {
         Projection::Equirectangular => equirectangular(unit),
         Projection::MirrorBall => mirror_ball(unit),
-        Projection::Sphere => [longitude(d), 0.5 + unit.z.clamp(-1.0, 1.0).asin() * FRAC_1_PI],
+        Projection::Sphere => around(d),
         Projection::Tube => [longitude(d), d.z + 0.5],
     };
     // Of an angle across the whole sphere: the mean of how it changes u and v.
     let per_radian = FRAC_1_PI * FRAC_1_SQRT_2;
     let width = if length > 0.0 { direction.width / length * per_radian } else { 0.0 };
     Value { v: Vec4::new(u, v, 0.0, 1.0), width }
+}
+
+/// Longitude and latitude of a direction of any length, from 0 to 1.
+#[must_use]
+pub fn around(d: Vec3) -> [f32; 2] {
+    let length = d.length();
+    let height = if length > 0.0 { d.z / length } else { 0.0 };
+    [longitude(d), 0.5 + height.clamp(-1.0, 1.0).asin() * FRAC_1_PI]
 }
 
 /// 0.5 along +Y, more towards -X; 0 on the axis.

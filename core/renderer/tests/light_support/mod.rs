@@ -3,13 +3,14 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::light::Lights;
 use rgp_renderer::scene::{
-    Camera, Lamp, LampShape, LightLinks, Material, Mesh, Object, ObjectInfo, Projection, Scene, SceneSpace,
-    Shutter, World, visibility,
+    Camera, Lamp, LampProgram, LampShape, LightLinks, Material, Mesh, Object, ObjectInfo, Projection, Scene,
+    SceneSpace, Shutter, World, visibility,
 };
+use rgp_renderer::shader::{Aside, Instruction, Program, Quantity, VectorFunction};
 
 /// A ray kind for look-ups: any one bit.
 pub(crate) const KIND: u32 = visibility::DIFFUSE;
@@ -20,6 +21,7 @@ pub(crate) fn lamp(shape: LampShape, power: f32, position: Vec3) -> Lamp {
         name: "lamp".into(),
         shape,
         power: Rgb::splat(power),
+        program: None,
         position,
         x_axis: Vec3::X,
         y_axis: Vec3::NEG_Y,
@@ -38,6 +40,27 @@ pub(crate) fn turned(mut lamp: Lamp) -> Lamp {
     lamp.y_axis = rotation * lamp.y_axis;
     lamp.axis = rotation * lamp.axis;
     lamp
+}
+
+/// The lamp with nodes that compute a factor of its power: the last of these instructions.
+pub(crate) fn with_nodes(mut lamp: Lamp, instructions: Vec<Instruction>) -> Lamp {
+    let axes = DMat3::from_cols(lamp.x_axis.as_dvec3(), lamp.y_axis.as_dvec3(), -lamp.axis.as_dvec3());
+    let world_from_lamp = DAffine3::from_mat3_translation(axes, lamp.position.as_dvec3());
+    let factor = instructions.len() as u16 - 1;
+    let program = Program::new(instructions, 0).expect("the instructions fit together");
+    let lamp_from_world = world_from_lamp.inverse();
+    lamp.program = Some(LampProgram { program, factor, info: ObjectInfo::default(), lamp_from_world });
+    lamp
+}
+
+/// What a program asks of the point it is run for.
+pub(crate) fn asked(quantity: Quantity) -> Instruction {
+    Instruction::Geometry { quantity, aside: Aside::Here }
+}
+
+/// The channels of two results, multiplied or added.
+pub(crate) fn vector_math(function: VectorFunction, a: u16, b: u16) -> Instruction {
+    Instruction::VectorMath { function, a, b, c: 0 }
 }
 
 /// A mesh object in one material slot per triangle.

@@ -14,7 +14,9 @@ use rgp_renderer::render;
 use rgp_renderer::scene::record::{
     CameraRecord, ClosureRecord, LampRecord, MaterialRecord, WeightedClosure, WorldRecord,
 };
-use rgp_renderer::scene::{LampShape, LightLinks, MeshArrays, Projection, Scene, SceneBuilder, visibility};
+use rgp_renderer::scene::{
+    LampShape, LightLinks, MeshArrays, ObjectInfo, Projection, Scene, SceneBuilder, visibility,
+};
 use rgp_renderer::settings::{PixelFilter, RenderSettings};
 use rgp_renderer::stats::Stats;
 
@@ -148,6 +150,8 @@ pub(crate) fn lamp(shape: LampShape, power: f32, position: DVec3) -> LampRecord 
         name: "lamp".into(),
         shape,
         power: Rgb::splat(power),
+        program: None,
+        info: ObjectInfo::default(),
         world_from_lamp: rows(DMat4::from_translation(position)),
         visibility: visibility::ALL & !visibility::CAMERA,
         casts_shadow: true,
