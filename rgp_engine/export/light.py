@@ -105,7 +105,7 @@ def lamp_shape(b_light: Any) -> dict[str, Any]:
 def node_factor(compiler: LampCompiler, b_light: Any) -> tuple[Color, dict[str, Any] | None]:
     """What the light's nodes multiply its power with; where that varies, 1 and the core's LampProgramRecord."""
     b_tree = node_tree(b_light)
-    b_output = None if b_tree is None else output_node(b_tree)
+    b_output = None if b_tree is None else output_node(b_tree, "OUTPUT_LIGHT")
     if b_output is None:
         return WHITE, None
     try:

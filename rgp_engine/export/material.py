@@ -43,7 +43,7 @@ def material_record(compiler: Compiler, b_material: Any) -> dict[str, Any]:
         color = list(b_material.diffuse_color[:3])
         closure = {"kind": "diffuse", "color": color}
         return {"name": name, "closures": [{"weight": [1.0] * 3, "closure": closure}]}
-    b_output = output_node(b_tree)
+    b_output = output_node(b_tree, "OUTPUT_MATERIAL")
     if b_output is None:
         compiler.report("it has no Material Output node; black is used")
         return {"name": name, "closures": []}

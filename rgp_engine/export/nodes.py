@@ -47,11 +47,12 @@ def node_tree(b_id: Any) -> Any | None:
     return None
 
 
-def output_node(b_tree: Any) -> Any | None:
-    """The tree's active output node: one for all engines, else Cycles', else EEVEE's."""
+def output_node(b_tree: Any, kind: str) -> Any | None:
+    """The tree's active output node of a kind, such as OUTPUT_MATERIAL: one for all engines, else Cycles', else EEVEE's."""
     for target in ("ALL", "CYCLES", "EEVEE"):
         b_node = b_tree.get_output_node(target)
-        if b_node is not None:
+        # Trees that scripts made may hold outputs of other kinds.
+        if b_node is not None and b_node.type == kind:
             return b_node
     return None
 

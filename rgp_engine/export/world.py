@@ -46,7 +46,7 @@ def world_radiance(context: ExportContext, b_world: Any) -> tuple[Color, dict[st
     b_tree = node_tree(b_world)
     if b_tree is None:
         return tuple(b_world.color), None
-    b_output = output_node(b_tree)
+    b_output = output_node(b_tree, "OUTPUT_WORLD")
     if b_output is None:
         return BLACK, None
     compiler = WorldCompiler(context, b_world.name)

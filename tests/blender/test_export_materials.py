@@ -223,6 +223,14 @@ def test_material_without_output_is_black_and_reported(scene, closures, problems
     assert "Material: it has no Material Output node; black is used" in problems()
 
 
+def test_an_output_of_another_kind_is_none(scene, closures, problems):
+    b_material, b_tree, _ = build.material()
+    b_tree.nodes.clear()
+    b_tree.nodes.new("ShaderNodeOutputLight")
+    assert closures(b_material) == []
+    assert "Material: it has no Material Output node; black is used" in problems()
+
+
 @pytest.mark.skipif(bpy.app.version >= (5, 0), reason="from Blender 5.0 on every material has nodes")
 def test_material_that_does_not_use_nodes(scene, closures):
     b_material = bpy.data.materials.new("Material")

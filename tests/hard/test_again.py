@@ -72,9 +72,9 @@ def cancelled_render(monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as patch:
         real = RenderSession._watch
 
-        def watch(self, core_session, b_result):
+        def watch(self, core_session, *others):
             core_session.cancel()
-            real(self, core_session, b_result)
+            real(self, core_session, *others)
 
         patch.setattr(RenderSession, "_watch", watch)
         gather = bpy.context.scene.rgp.gather

@@ -13,9 +13,11 @@ from scenes import common
 from tests.blender import build as nodes
 from tests.render import cases
 from tests.render.cases import BESIDE, HALF_SPREAD, Lamp
+from tests.render.luminaire_cases import ies_text, luminaire
 from tests.render.node_scene import noise_image
 
 POINT = Lamp("POINT", 200.0, {"shadow_soft_size": 0.0})
+TURNED = Lamp("POINT", 200.0, POINT.settings, scale=(1.0, 1.5, 0.7))
 SPHERE = Lamp("POINT", 200.0, {"shadow_soft_size": 0.4, "use_soft_falloff": False})
 SOFT = Lamp("POINT", 200.0, {"shadow_soft_size": 0.4, "use_soft_falloff": True})
 SPOT = Lamp("SPOT", 400.0, {"shadow_soft_size": 0.0, "spot_size": 1.2, "spot_blend": 0.3})
@@ -129,6 +131,16 @@ def _of_the_lamp(b_tree: Any, b_emission: Any) -> None:
     nodes.connect(b_tree, b_add, b_emission, "Color")
 
 
+def _luminaire(*horizontal: float) -> Callable[[Any, Any], None]:
+    """An IES Texture of planes at these angles (degrees) as the strength."""
+
+    def add(b_tree: Any, b_emission: Any) -> None:
+        strength = luminaire(ies_text(horizontal))(b_tree)
+        b_tree.links.new(strength, b_emission.inputs["Strength"])
+
+    return add
+
+
 LAMPS = {
     "area_image": LampNodes(AREA, _image()),
     "area_image_narrow": LampNodes(NARROW, _image()),
@@ -150,6 +162,9 @@ LAMPS = {
     "spot_gobo_by_normal": LampNodes(SPOT, _gobo),
     "spot_image": LampNodes(SPOT, _image()),
     "spot_sphere_noise_by_object": LampNodes(SPOT_SPHERE, _noise("Object", 4.0)),
+    "point_luminaire": LampNodes(TURNED, _luminaire(0, 45, 90, 180, 270, 360)),
+    "sphere_luminaire": LampNodes(SPHERE, _luminaire(0, 30, 90)),
+    "spot_luminaire": LampNodes(SPOT, _luminaire(0)),
     "sun_blackbody": LampNodes(SUN, _blackbody),
     "sun_image": LampNodes(WIDE_SUN, _image()),
     "object_color": LampNodes(POINT, _of_the_lamp),

@@ -184,9 +184,10 @@ impl<'a> Sight<'a> {
         if self.shader.is_sun() { f32::MAX } else { length / self.shader.space.scale as f32 }
     }
 
-    fn object_normal(&self) -> Vec3 {
+    /// A direction in the lamp's own space, turned as normals are.
+    fn object_normal(&self, direction: Vec3) -> Vec3 {
         let to_world = self.shader.program.lamp_from_world.matrix3.inverse();
-        (to_world.transpose() * self.normal.as_dvec3()).normalize_or_zero().as_vec3()
+        (to_world.transpose() * direction.as_dvec3()).normalize_or_zero().as_vec3()
     }
 }
 
@@ -204,8 +205,9 @@ impl Point for Sight<'_> {
                 Value::vector(program.lamp_from_world.transform_point3(self.position()).as_vec3())
             }
             Quantity::Normal | Quantity::TrueNormal => Value::vector(self.normal),
-            Quantity::ObjectNormal => Value::vector(self.object_normal()),
+            Quantity::ObjectNormal => Value::vector(self.object_normal(self.normal)),
             Quantity::Incoming => Value::vector(wo),
+            Quantity::ObjectIncoming => Value::vector(self.object_normal(wo)),
             Quantity::Reflection => Value::vector(self.normal * (2.0 * wo.dot(self.normal)) - wo),
             Quantity::Parametric => {
                 Value::vector(self.shader.uv(self.p, self.look.wi, self.outward).extend(0.0))
@@ -227,7 +229,7 @@ impl Point for Sight<'_> {
         }
     }
 
-    fn steps(&self) -> [Vec3; 2] {
+    fn steps(&self, _widths: f32) -> [Vec3; 2] {
         [Vec3::ZERO; 2]
     }
 

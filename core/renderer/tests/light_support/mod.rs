@@ -55,7 +55,7 @@ pub(crate) fn with_nodes(mut lamp: Lamp, instructions: Vec<Instruction>) -> Lamp
 
 /// What a program asks of the point it is run for.
 pub(crate) fn asked(quantity: Quantity) -> Instruction {
-    Instruction::Geometry { quantity, aside: Aside::Here }
+    Instruction::Geometry { quantity, aside: Aside::HERE }
 }
 
 /// The channels of two results, multiplied or added.
