@@ -48,7 +48,7 @@ def node_tree(b_id: Any) -> Any | None:
 
 
 def output_node(b_tree: Any, kind: str) -> Any | None:
-    """The tree's active output node of a kind, such as OUTPUT_MATERIAL: one for all engines, else Cycles', else EEVEE's."""
+    """The tree's active output node of a kind (OUTPUT_MATERIAL): one for all engines, else Cycles', else EEVEE's."""
     for target in ("ALL", "CYCLES", "EEVEE"):
         b_node = b_tree.get_output_node(target)
         # Trees that scripts made may hold outputs of other kinds.

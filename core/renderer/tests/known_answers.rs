@@ -50,7 +50,7 @@ fn sphere_with_a_lamp_that_does_not_fall_off() {
             let shell = material(&[ClosureRecord::Transparent { color: Rgb::WHITE }]);
             place(&mut builder, sphere(3, 0.2, at.as_vec3()), &[shell]);
         }
-        let length = Instruction::Geometry { quantity: Quantity::RayLength, aside: Aside::Here };
+        let length = Instruction::Geometry { quantity: Quantity::RayLength, aside: Aside::HERE };
         let squared = Instruction::Math { function: MathFunction::Multiply, a: 0, b: 0, c: 0 };
         let program = LampProgramRecord { instructions: vec![length, squared], factor: 1 };
         builder.add_lamp(LampRecord { program: Some(program), ..point_lamp(flux as f32, at) });
