@@ -92,6 +92,14 @@ class Folder:
         if self._shaders_met > _MOST_SHADERS:
             raise RecursionError("too many shader nodes")
 
+    def folds(self, source: Output) -> bool:
+        """Whether a constant can stand for a node's output."""
+        try:
+            self._node(source)
+        except UnfoldableError:
+            return False
+        return True
+
     def typical(self, source: Output) -> Value:
         """A value that stands for a node's output."""
         try:

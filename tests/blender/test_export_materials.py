@@ -359,6 +359,19 @@ def test_a_constant_tree_has_no_program(scene, closures, recorded):
     assert "program" not in recorded.last.material_of("Material")
 
 
+def test_constants_that_only_the_core_can_compute_have_one(scene, closures, recorded, problems):
+    b_material, b_tree, b_output = build.material()
+    b_value = build.node(b_tree, "ShaderNodeVectorMath")
+    b_value.operation = "CROSS_PRODUCT"
+    b_shader = b_tree.nodes.new("ShaderNodeBsdfDiffuse")
+    build.connect(b_tree, b_value, b_shader, "Color")
+    build.connect(b_tree, b_shader, b_output, "Surface")
+    closures(b_material)
+    operations = [step["op"] for step in recorded.last.material_of("Material")["program"]["instructions"]]
+    assert operations == ["constant", "vector_math"]
+    assert not any("Vector Math" in text for text in problems())
+
+
 def test_missing_image_is_magenta_and_reported(scene, closures, problems):
     b_image = bpy.data.images.new("Lost", 1, 1)
     b_image.source = "FILE"

@@ -110,6 +110,11 @@ def _value_nodes() -> Iterator[tuple[str, NodeCase]]:
     for function in (*functions, "MODULO"):
         make = output_of("VectorMath", inputs=vectors, operation=function)
         yield f"Vector Math/{function}", NodeCase(make)
+    constants = {0: (0.9, 0.2, 0.5), 1: (0.3, 0.5, 0.2)}
+    yield (
+        "Vector Math/of constants",
+        NodeCase(output_of("VectorMath", 0, constants, operation="CROSS_PRODUCT")),
+    )
     ends = {0: IMAGE, 1: 0.2, 2: 0.7, 3: 0.1, 4: 0.9}
     for kind in ("LINEAR", "STEPPED", "SMOOTHSTEP", "SMOOTHERSTEP"):
         yield f"Map Range/{kind}", NodeCase(output_of("MapRange", inputs=ends, interpolation_type=kind))
@@ -132,6 +137,8 @@ def _color_nodes() -> Iterator[tuple[str, NodeCase]]:
             f"Mix/{item.identifier}",
             NodeCase(output_of("MixRGB", inputs=inputs, blend_type=item.identifier)),
         )
+    constants = {"Fac": 0.7, 1: (0.8, 0.3, 0.1, 1.0), 2: (0.3, 0.5, 0.2, 1.0)}
+    yield "Mix/HUE of constants", NodeCase(output_of("MixRGB", inputs=constants, blend_type="HUE"))
     yield "Color Ramp", NodeCase(output_of("ValToRGB", inputs={0: IMAGE}))
     yield "RGB Curves", NodeCase(output_of("RGBCurve", inputs={1: IMAGE}))
     for extend in ("HORIZONTAL", "EXTRAPOLATED"):

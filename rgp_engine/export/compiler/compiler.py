@@ -2,7 +2,7 @@
 computed at every hit.
 
 Whatever is constant stays a constant: only nodes behind which something differs from point to point become
-instructions.
+instructions, and those whose constant only the core can compute.
 """
 
 from collections.abc import Iterable
@@ -140,7 +140,10 @@ class Compiler(Folder):
         if kind not in NODES:
             return False
         behind = (origin(Input(b_socket, source.groups)) for b_socket in source.b_node.inputs)
-        return any(isinstance(found, Output) and self.varies(found) for found in behind)
+        if any(isinstance(found, Output) and self.varies(found) for found in behind):
+            return True
+        # What is constant and cannot be computed here is left to the core.
+        return not self._silent.folds(source)
 
     def _emit_node(self, source: Output) -> Operand:
         try:
