@@ -3,9 +3,9 @@
 use rgp_renderer::scene::Projection;
 use rgp_renderer::scene::record::Input;
 use rgp_renderer::shader::{
-    BlendMode, CellHash, Extension, Feature, Fractal, GradientShape, Interpolation, MathFunction,
-    Metric, NormalSpace, Projection as PanoramaProjection, Quantity, VectorFunction, VoronoiOutput,
-    WaveDirection, WaveProfile,
+    BlendMode, CellHash, Extension, Feature, Fractal, GradientShape, Interpolation, MathFunction, Metric,
+    NormalSpace, Projection as PanoramaProjection, Quantity, VectorFunction, VoronoiOutput, WaveDirection,
+    WaveProfile,
 };
 
 use crate::records::Kind::{
