@@ -38,6 +38,7 @@ def _record_or_default(compiler: Compiler, b_material: Any) -> dict[str, Any]:
 def material_record(compiler: Compiler, b_material: Any) -> dict[str, Any]:
     """The surface of a material; a volume is reported."""
     name = b_material.name
+    compiler.material_index = b_material.pass_index
     b_tree = node_tree(b_material)
     if b_tree is None:
         color = list(b_material.diffuse_color[:3])

@@ -72,7 +72,7 @@ def _surface_nodes() -> Iterator[tuple[str, NodeCase]]:
     yield "Texture Coordinate/Window in perspective", NodeCase(window, has_perspective=True)
     island = output_of("NewGeometry", "Random Per Island")
     yield "Geometry/Random Per Island of two", NodeCase(island, EDGES, has_islands=True)
-    for output in ("Location", "Color", "Object Index", "Random"):
+    for output in ("Location", "Color", "Object Index", "Material Index", "Random"):
         yield f"Object Info/{output}", NodeCase(output_of("ObjectInfo", output))
     yield "UV Map", NodeCase(output_of("UVMap"))
     yield "Color Attribute", NodeCase(output_of("VertexColor", layer_name="Paint"))

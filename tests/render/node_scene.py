@@ -62,6 +62,7 @@ def node_scene(case: NodeCase) -> bpy.types.Scene:
     else:
         b_camera.data.type, b_camera.data.ortho_scale = "ORTHO", 1.0
     b_material, b_tree, b_output = build.material()
+    b_material.pass_index = 2
     b_emission = b_tree.nodes.new("ShaderNodeEmission")
     b_raised = scaled(b_tree, case.make(b_tree), 0.25, 0.5)
     build.connect(b_tree, b_raised, b_emission, "Color")

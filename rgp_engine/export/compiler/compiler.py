@@ -41,6 +41,8 @@ class Compiler(Folder):
     """True for a lamp: there is no mesh, and it is known how far away it is seen from."""
     is_sun = False
     """True for a lamp that is infinitely far away."""
+    material_index = 0
+    """Of Blender's Object Info."""
 
     def __init__(self, context: "ExportContext", subject: str) -> None:
         super().__init__(subject, context.log)

@@ -138,6 +138,8 @@ _OBJECT_INFO = {
 
 def _object_info(c: "Compiler", source: Output) -> "Operand | None":
     name = source.b_socket.identifier
+    if name == "Material Index":
+        return float(c.material_index)
     c.asks_object = True
     if name == "Alpha":
         return c.emit("alpha", of=c.quantity("object_color"))
