@@ -31,8 +31,8 @@ NOTES = {
     ),
     "modern_hall": "Nothing differs at a glance.",
     "sibenik": (
-        "Nothing differs at a glance. Our picture is 2 % darker, mostly in the upper nave; cells are coarse "
-        "there, as the file has a ground of 126 m round a nave of 30 m."
+        "Nothing differs at a glance but noise. Cells are coarse in the nave of 30 m, as the file has a ground of "
+        "126 m round it."
     ),
     "veach_ajar": "Nothing differs but noise: light comes through a gap alone, and Cycles is as noisy as bright.",
     "water_caustic": (
