@@ -160,7 +160,7 @@ def test_a_text_becomes_a_table_seen_towards_the_viewer(lamp_material, exported,
     web = instruction(record, "photometric_web")
     assert web["web"] == read(GOOD).record()
     steps = record["program"]["instructions"]
-    assert steps[web["vector"]] == {"op": "geometry", "quantity": "object_incoming", "aside": "here"}
+    assert steps[web["vector"]] == {"op": "geometry", "quantity": "object_incoming", "aside": (0.0, 0.0)}
     assert steps[instruction(record, "math")["a"]]["value"][0] == 2.0
 
 

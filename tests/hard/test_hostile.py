@@ -188,7 +188,7 @@ def shining(web):
     """A floor that shines as a luminaire does, seen from above."""
     scene = scenes.Scene()
     scene.look((0, 0, 3), (0, 0, 0), 0.5, pixels=(4, 4))
-    towards = {"op": "geometry", "quantity": "object_incoming", "aside": "here"}
+    towards = {"op": "geometry", "quantity": "object_incoming", "aside": [0.0, 0.0]}
     look = {"op": "photometric_web", "vector": 0, "web": web.record()}
     outputs = [{"closure": 0, "input": "radiance", "register": 1}]
     program = {"instructions": [towards, look], "outputs": outputs, "normal": None, "normals": []}
