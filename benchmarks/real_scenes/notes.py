@@ -39,8 +39,9 @@ NOTES = {
         "**Our picture is several times brighter:** the lamp is a square of 5 mm, and nearly all light below the "
         "water is a caustic. Paths meet such a lamp behind glass next to never: Cycles misses the light at any "
         "number of samples that anyone waits for, `gather.estimator=path` as well, and ours comes from the "
-        "caustic map. With a lamp of 50 cm, which paths find, both engines agree within 1 % at the surface of the "
-        "water. That surface was black in ours until smooth normals were bent where they mirror to below the "
+        "caustic map. The mean of Cycles' picture is that of the few sparks it found, a sixth of ours in one run and "
+        "twice ours in the next, so that the figures say nothing. With a lamp of 50 cm, which paths find, both engines "
+        "agree within 1 % at the surface of the water. That surface was black in ours until smooth normals were turned where they mirror to below the "
         "surface: the file's normals all point straight up, whatever the waves do."
     ),
     "wooden_staircase": "Nothing differs at a glance. Cycles is noisier where the one lamp does not shine.",

@@ -237,10 +237,10 @@ def test_color_into_value_is_luminance(tree, fold):
 
 
 @pytest.mark.skipif("temperature" not in bpy.types.Light.bl_rna.properties, reason="Blender 4.5 and later")
-@pytest.mark.parametrize("kelvin", [2500.0, 3200.0, 5000.0, 6500.0, 11000.0])
+@pytest.mark.parametrize("kelvin", [900.0, 1500.0, 2500.0, 3200.0, 5000.0, 6500.0, 11000.0])
 def test_blackbody_is_blenders(tree, fold, kelvin):
     b_light = bpy.data.lights.new("Lamp", "POINT")
     b_light.use_temperature, b_light.temperature = True, kelvin
     expected = tuple(b_light.temperature_color)
     found = fold(build.node(tree, "ShaderNodeBlackbody", Temperature=kelvin))
-    assert found == pytest.approx(expected, rel=0.02, abs=0.01)
+    assert found == pytest.approx(expected, rel=2e-3, abs=1e-3)
