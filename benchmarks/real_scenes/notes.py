@@ -42,7 +42,8 @@ NOTES = {
         "caustic map. The mean of Cycles' picture is that of the few sparks it found, a sixth of ours in one run and "
         "twice ours in the next, so that the figures say nothing. With a lamp of 50 cm, which paths find, both engines "
         "agree within 1 % at the surface of the water. That surface was black in ours until smooth normals were "
-        "turned where they mirror to below the surface: the file's normals all point straight up, whatever the waves do."
+        "turned where they mirror to below the surface: the file's normals all point straight up, whatever the "
+        "waves do."
     ),
     "wooden_staircase": "Nothing differs at a glance. Cycles is noisier where the one lamp does not shine.",
 }
