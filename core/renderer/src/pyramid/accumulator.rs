@@ -3,6 +3,7 @@
 //! Photons come in two sets that are kept apart, each an estimate of all the light: what two halves of a picture read from
 //! different sets differs by the photons' noise too.
 
+use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::sync::atomic::{AtomicI64, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -10,9 +11,8 @@ use std::sync::{Mutex, PoisonError};
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::bins::{BinCorners, BinSums, DirectionBins, LANES, Lanes};
+use super::bins::{BinCorners, DirectionBins, LANES, Lanes};
 use super::layout::Layout;
-use super::lit::LitLayout;
 use crate::color::Rgb;
 use crate::math::{Frame, Side};
 use crate::sampling::{Rng, hash};
@@ -44,15 +44,6 @@ struct AtomicCell {
     flux: [[AtomicI64; 3]; SETS],
     /// Photons of all sets.
     count: AtomicU32,
-}
-
-impl AtomicCell {
-    fn add(&self, other: &Self) {
-        for (sum, flux) in self.flux.as_flattened().iter().zip(other.flux.as_flattened()) {
-            sum.fetch_add(flux.load(Ordering::Relaxed), Ordering::Relaxed);
-        }
-        self.count.fetch_add(other.count.load(Ordering::Relaxed), Ordering::Relaxed);
-    }
 }
 
 /// A photon that has landed.
@@ -237,29 +228,14 @@ impl<'a> Accumulator<'a> {
         glossy.sum()
     }
 
-    /// By level and place: photons that landed there.
-    pub(super) fn counts(&self) -> Vec<Vec<u64>> {
-        let count = |cell: &AtomicCell| u64::from(cell.count.load(Ordering::Relaxed));
-        self.cells.iter().map(|cells| cells.par_iter().map(count).collect()).collect()
+    /// By level and place: whether photons landed there.
+    pub(super) fn landed(&self) -> Vec<Vec<bool>> {
+        let landed = |cell: &AtomicCell| cell.count.load(Ordering::Relaxed) > 0;
+        self.cells.iter().map(|cells| cells.par_iter().map(landed).collect()).collect()
     }
 
-    /// Adds what landed in cells that do not matter to the coarser ones around them.
-    fn fold(&self, lit: &LitLayout<'_>) {
-        for level in (1..self.cells.len()).rev() {
-            let cells = self.cells[level].par_iter().enumerate();
-            cells.filter(|(_, cell)| cell.count.load(Ordering::Relaxed) > 0).for_each(|(place, cell)| {
-                let parent = self.layout.parent(level, place).filter(|_| !lit.matters(level, place));
-                if let Some(parent) = parent {
-                    self.cells[level - 1][parent].add(cell);
-                }
-            });
-        }
-    }
-
-    /// What was added to the cells that matter, by level and in their order.
-    pub(super) fn into_sums(mut self, lit: &LitLayout<'_>) -> Sums {
-        self.fold(lit);
-        let places = &lit.places;
+    /// What was added to the cells at `places`, by level; in their order.
+    pub(super) fn into_sums(mut self, places: &[Vec<u32>]) -> Sums {
         let sum = |cell: &AtomicCell| CellSum {
             flux: cell.flux.each_ref().map(|set| set.each_ref().map(|flux| flux.load(Ordering::Relaxed))),
             count: u64::from(cell.count.load(Ordering::Relaxed)),
@@ -274,27 +250,24 @@ impl<'a> Accumulator<'a> {
             let bin = |set: &[[[i64; LANES]; 3]], bin: usize| set[bin / LANES].map(|sums| sums[bin % LANES]);
             sets.flat_map(|set| (0..count).map(move |at| bin(set, at))).collect()
         };
-        let filled = |level: &mut Vec<Mutex<GlossySums>>| -> BinSums {
-            let sums =
-                level.par_iter_mut().map(|sums| sums.get_mut().unwrap_or_else(PoisonError::into_inner));
-            let filled = sums.enumerate().filter(|(_, sums)| !sums.is_empty());
-            filled.map(|(place, sums)| (place, by_bin(&std::mem::take(sums)))).collect()
-        };
-        let mut glossy: Vec<_> = self.glossy.iter_mut().map(filled).collect();
-        for level in (0..glossy.len()).rev() {
-            let (matter, rest): (BinSums, BinSums) = std::mem::take(&mut glossy[level])
-                .into_iter()
-                .partition(|&(place, _)| lit.matters(level, place));
-            for (place, values) in rest {
-                if let Some(parent) = self.layout.parent(level, place) {
-                    self.bins.merge(self.layout, (level, place), &values, parent, &mut glossy[level - 1]);
+        let glossy = self.glossy.iter_mut().zip(places).map(|(level, places)| {
+            let mut filled: Vec<(usize, GlossySums)> = Vec::new();
+            let places = if level.is_empty() { [].as_slice() } else { places };
+            for (number, &place) in places.iter().enumerate() {
+                let sums = level[place as usize].get_mut().unwrap_or_else(PoisonError::into_inner);
+                if !sums.is_empty() {
+                    filled.push((number, std::mem::take(sums)));
                 }
             }
-            let places = &places[level];
-            let number = |place: usize| places.partition_point(|&other| (other as usize) < place);
-            glossy[level] = matter.into_iter().map(|(place, values)| (number(place), values)).collect();
+            filled.into_par_iter().map(|(place, sums)| (place, by_bin(&sums))).collect()
+        });
+        Sums {
+            cells,
+            glossy: glossy.collect(),
+            bins: self.bins,
+            quantum: self.quantum,
+            bin_quantum: self.quantum * COARSER,
         }
-        Sums { cells, glossy, bins: self.bins, quantum: self.quantum, bin_quantum: self.quantum * COARSER }
     }
 }
 
@@ -303,7 +276,7 @@ pub(super) struct Sums {
     /// By level, by place.
     pub(super) cells: Vec<Vec<CellSum>>,
     /// By level: quanta of each bin of each set of the glossy cells, by place.
-    pub(super) glossy: Vec<BinSums>,
+    pub(super) glossy: Vec<BTreeMap<usize, Vec<[i64; 3]>>>,
     /// How the hemisphere is cut.
     pub(super) bins: DirectionBins,
     /// Flux of one quantum of a cell, and of one quantum of a bin.

@@ -3,13 +3,11 @@
 //! The hemisphere about a cell's mean normal is cut into bins of equal solid angle, uniform in cos θ and azimuth (the
 //! paper's are uniform in θ, which starves the pole). A bin holds radiance with the surface's tint divided out.
 
-use std::collections::BTreeMap;
 use std::f32::consts::TAU;
 
 use glam::Vec3;
 
 use super::accumulator::SETS;
-use super::layout::Layout;
 use crate::color::Rgb;
 use crate::math::Frame;
 
@@ -27,9 +25,6 @@ pub(super) const LANES: usize = 16;
 
 /// A number for each of [`LANES`] bins, by axis or channel.
 pub type Lanes = [[f32; LANES]; 3];
-
-/// Quanta of each bin of each set of the glossy cells of a level, by place.
-pub(super) type BinSums = BTreeMap<usize, Vec<[i64; 3]>>;
 
 impl DirectionBins {
     /// Number of bins.
@@ -59,25 +54,8 @@ impl DirectionBins {
         (ring * self.azimuth + sector) as usize
     }
 
-    /// Adds the values of a glossy cell, level and place, to those of the coarser cell `parent`, which are among `coarser`.
-    pub(super) fn merge(
-        self,
-        layout: &Layout,
-        (level, place): (usize, usize),
-        values: &[[i64; 3]],
-        parent: usize,
-        coarser: &mut BinSums,
-    ) {
-        let [from, to] = [(level, place), (level - 1, parent)]
-            .map(|(level, place)| Frame::new(layout.bins_normal(level, place)));
-        let total = coarser.entry(parent).or_insert_with(|| vec![[0; 3]; values.len()]);
-        for (values, total) in values.chunks(self.count()).zip(total.chunks_mut(self.count())) {
-            self.add(&from, values, &to, total);
-        }
-    }
-
     /// Adds the bins of a cell about `from` to those of one about `to`.
-    fn add(self, from: &Frame, values: &[[i64; 3]], to: &Frame, sums: &mut [[i64; 3]]) {
+    pub(super) fn add(self, from: &Frame, values: &[[i64; 3]], to: &Frame, sums: &mut [[i64; 3]]) {
         let aligned = from.normal.dot(to.normal) > 1.0 - 1e-6;
         for (bin, sum) in sums.iter_mut().enumerate() {
             let source = if aligned {

@@ -15,6 +15,7 @@ use super::mixed::mixed_cells;
 use super::surfaces::Surfaces;
 use super::{Cell, Level, Pyramid, Surroundings};
 use crate::color::Rgb;
+use crate::math::Frame;
 
 impl Pyramid {
     /// Photons that a cell has to hold for its children to be read.
@@ -33,16 +34,16 @@ impl Pyramid {
         photons_per_cell: u32,
         scene: &impl Surroundings,
     ) -> Option<Self> {
-        let enough = Self::photons_to_divide(photons_per_cell).into();
-        let lit = LitLayout::new(layout, accumulator.counts(), enough);
-        let mut sums = accumulator.into_sums(&lit);
+        let lit = LitLayout::new(layout, accumulator.landed());
+        let mut sums = accumulator.into_sums(&lit.places);
         let (layout, surfaces) = (&lit.layout, Surfaces::measure(&lit, scene)?);
         merge(&surfaces, &mut sums.cells);
         let clock = Instant::now();
         merge_bins(layout, &surfaces, &mut sums);
         let mut bins_time = clock.elapsed();
         let mixed = mixed_cells(layout, &surfaces, &sums.cells, scene);
-        let grid = pruned_grid(&lit, &mixed);
+        let enough = Self::photons_to_divide(photons_per_cell).into();
+        let grid = pruned_grid(layout, &sums, &mixed, enough);
         let mut store = BinStore::new(sums.bins);
         let known = Known { surfaces: &surfaces, sums: &sums, mixed: &mixed, grid: &grid, enough };
         let mut settled: Vec<Settled> = Vec::with_capacity(layout.levels.len());
@@ -146,22 +147,19 @@ impl Known<'_> {
 
 /// The grid, without refinements that hold too few photons: block by block, a level is worth reading where most of its
 /// cells' parents hold enough, or where one that does is mixed.
-fn pruned_grid(lit: &LitLayout<'_>, mixed: &[Vec<bool>]) -> Grid {
-    let (mut grid, whole) = (lit.whole.grid.clone(), lit.whole);
+fn pruned_grid(layout: &Layout, sums: &Sums, mixed: &[Vec<bool>], enough: u64) -> Grid {
+    let mut grid = layout.grid.clone();
     let votes = (grid.base()..grid.finest()).flat_map(|number| {
-        let mut mixed = lit.places[number].iter().zip(&mixed[number]).filter(|(_, mixed)| **mixed).peekable();
         let vote = move |(place, key): (usize, &CellKey)| {
-            let count = lit.counts[number][place];
-            while mixed.next_if(|(mixed, _)| (**mixed as usize) < place).is_some() {}
-            let is_mixed = mixed.peek().is_some_and(|(mixed, _)| **mixed as usize == place);
-            let vote = match (count >= lit.enough, is_mixed) {
+            let count = sums.cells[number][place].count;
+            let vote = match (count >= enough, mixed[number][place]) {
                 (true, true) => Vote::Needed,
                 (true, false) => Vote::For,
                 (false, _) => Vote::Against,
             };
-            (count > 0).then(|| (number, key.cell(&whole.grid.levels[number]).0, vote))
+            (count > 0).then(|| (number, key.cell(&layout.grid.levels[number]).0, vote))
         };
-        whole.levels[number].keys.iter().enumerate().filter_map(vote)
+        layout.levels[number].keys.iter().enumerate().filter_map(vote)
     });
     grid.prune(votes);
     grid
@@ -207,11 +205,16 @@ fn merge(surfaces: &Surfaces<'_>, cells: &mut [Vec<CellSum>]) {
 
 /// Adds the bins of every glossy cell to its parent's, from the finest level up.
 fn merge_bins(layout: &Layout, surfaces: &Surfaces<'_>, sums: &mut Sums) {
+    let frame = |level: usize, place: usize| Frame::new(layout.bins_normal(level, place));
     for level in (1..sums.glossy.len()).rev() {
         let (coarser, finer) = sums.glossy.split_at_mut(level);
         for (&place, values) in &finer[0] {
             if let Some(parent) = surfaces.counting_parent(level, place) {
-                sums.bins.merge(layout, (level, place), values, parent, &mut coarser[level - 1]);
+                let count = sums.bins.count();
+                let total = coarser[level - 1].entry(parent).or_insert_with(|| vec![[0; 3]; SETS * count]);
+                for (values, total) in values.chunks(count).zip(total.chunks_mut(count)) {
+                    sums.bins.add(&frame(level, place), values, &frame(level - 1, parent), total);
+                }
             }
         }
     }

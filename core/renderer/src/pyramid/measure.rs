@@ -174,12 +174,11 @@ impl<S: Surroundings> Pending<'_, S> {
         let triangle = self.scene.triangle(i);
         let sides = Side::both(triangle.normal).map(|side| (side, self.layout.classes.of(side)));
         let (layout, lit) = (self.layout, self.lit);
-        let is_whole = |level: usize, cell: IVec3| {
+        let is_dark = |level: usize, cell: IVec3| {
             let place = |class| layout.levels[level].index.find(cell, class);
-            let finer_matter = |place: usize| lit.finer_matter[level][place];
-            !sides.iter().any(|&(_, class)| place(class).is_some_and(finer_matter))
+            sides.iter().all(|&(_, class)| place(class).is_none_or(|place| !lit.is_lit[level][place]))
         };
-        clip_triangle(&layout.grid, triangle.corners, is_whole, |level, cell, part| {
+        clip_triangle(&layout.grid, triangle.corners, is_dark, |level, cell, part| {
             let mut is_alone = None;
             for (side, class) in sides {
                 let Some((of, place)) = self.counted_in(level, cell, class) else { continue };

@@ -217,7 +217,7 @@ impl<'a> Surfaces<'a> {
     pub(super) fn measure(lit: &'a LitLayout<'_>, scene: &impl Surroundings) -> Option<Self> {
         let layout = &lit.layout;
         let none = |level: &Vec<bool>| level.par_iter().map(|_| OpenSum::default()).collect();
-        let mut sums: Vec<Vec<OpenSum>> = lit.finer_matter.iter().map(none).collect();
+        let mut sums: Vec<Vec<OpenSum>> = lit.is_lit.iter().map(none).collect();
         measure(lit, scene, &sums)?;
         for (level, sums) in sums.iter().enumerate() {
             find_divided(layout, level, sums, scene);
@@ -366,13 +366,13 @@ mod tests {
         SurfaceTriangle { corners: [a, b, c], normal: (b - a).cross(c - a).normalize().as_vec3(), glossy }
     }
 
-    /// As if a photon had landed in every cell that `is_lit`, and one were enough.
+    /// As if photons had landed in every cell that `is_lit`.
     fn lit(layout: &Layout, is_lit: impl Fn(usize, usize) -> bool) -> LitLayout<'_> {
         let level = |number: usize| {
             let places = 0..layout.levels[number].keys.len();
-            places.map(|place| u64::from(is_lit(number, place))).collect()
+            places.map(|place| is_lit(number, place)).collect()
         };
-        LitLayout::new(layout, (0..layout.levels.len()).map(level).collect(), 1)
+        LitLayout::new(layout, (0..layout.levels.len()).map(level).collect())
     }
 
     /// Area per level is the area of the surfaces, both sides, at every level.
@@ -450,7 +450,7 @@ mod tests {
             for place in places.filter(|&place| class(level, place) == front) {
                 let (parent, key) = (layout.parent(level, place).unwrap(), layout.levels[level].keys[place]);
                 let above = some.places[level - 1].binary_search(&u32::try_from(parent).unwrap());
-                let is_measured = above.is_ok_and(|above| some.finer_matter[level - 1][above]);
+                let is_measured = above.is_ok_and(|above| some.is_lit[level - 1][above]);
                 let exact = if is_measured { whole.area(level, place) } else { 0.0 };
                 assert!((area_of(key, level) - exact).abs() < 1e-9 * 0.04, "level {level}");
             }
