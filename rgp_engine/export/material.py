@@ -7,8 +7,12 @@ from .compiler import MOST_INSTRUCTIONS, Compiler, displace
 from .context import ExportContext
 from .fold import TOO_DEEP
 from .nodes import Input, Output, node_tree, origin, output_node
+from .volume import absorption
 
 _DEFAULT = {"weight": [1.0] * 3, "closure": {"kind": "diffuse", "color": [0.8] * 3}}
+
+_CLEAR = {"weight": [1.0] * 3, "closure": {"kind": "transparent", "color": [1.0] * 3}}
+"""Where there is a volume and no surface."""
 
 
 def material_index(context: ExportContext, b_material: Any | None) -> int:
@@ -36,7 +40,7 @@ def _record_or_default(compiler: Compiler, b_material: Any) -> dict[str, Any]:
 
 
 def material_record(compiler: Compiler, b_material: Any) -> dict[str, Any]:
-    """The surface of a material; a volume is reported."""
+    """The surface of a material, and what its volume absorbs."""
     name = b_material.name
     compiler.material_index = b_material.pass_index
     b_tree = node_tree(b_material)
@@ -48,17 +52,21 @@ def material_record(compiler: Compiler, b_material: Any) -> dict[str, Any]:
     if b_output is None:
         compiler.report("it has no Material Output node; black is used")
         return {"name": name, "closures": []}
-    if isinstance(origin(Input(b_output.inputs["Volume"], ())), Output):
-        compiler.report("Volume is not supported yet; left out")
     displacement = Input(b_output.inputs["Displacement"], ())
     if isinstance(origin(displacement), Output) and not displace(compiler, displacement):
         compiler.report("this Displacement is not supported yet; left out")
     elif compiler.normal is not None and getattr(b_material, "displacement_method", "BUMP") != "BUMP":
         compiler.report("its Displacement is rendered as a bump")
-    records, outputs = closures(compiler, Input(b_output.inputs["Surface"], ()))
+    surface, volume = (Input(b_output.inputs[name], ()) for name in ("Surface", "Volume"))
+    has_volume = isinstance(origin(volume), Output)
+    records, outputs = closures(compiler, surface)
+    if has_volume and isinstance(origin(surface), Input):
+        records = [_CLEAR]
     if compiler.normals and not _softens_bumps(b_material):
         compiler.report("Bump Map Correction cannot be switched off")
     record: dict[str, Any] = {"name": name, "closures": records}
+    if has_volume:
+        record["absorption"] = list(absorption(compiler, volume))
     if not outputs and not compiler.normals and compiler.normal is None:
         return record
     if len(compiler.instructions) > MOST_INSTRUCTIONS:

@@ -45,6 +45,10 @@ class RGPEffectSettings(bpy.types.PropertyGroup):
         "Alpha Transparency",
         "Light straight through transparent surfaces; Off makes them opaque",
     )
+    absorption: _switch(
+        "Absorption",
+        "Light that is absorbed on its way through colored glass and water; Off makes them clear",
+    )
     depth_of_field: _switch(
         "Depth of Field",
         "Blur of what is not in focus, where the camera's depth of field is on; Off makes everything sharp",

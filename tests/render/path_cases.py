@@ -16,6 +16,7 @@ from tests.render.luminaire_cases import ies_text, luminaire
 
 MIRROR = shader("BsdfGlossy", Color=(0.9, 0.9, 0.9), Roughness=0.0)
 RED = (0.7, 0.15, 0.1)
+GREEN = shader("VolumeAbsorption", Color=(0.2, 0.8, 0.4), Density=1.5)
 
 
 def add_polygons(name: str, polygons: Sequence[Sequence[common.Point]], surface: Surface) -> bpy.types.Object:
@@ -121,6 +122,67 @@ def _block_of_glass() -> None:
     cases.add_light("world")
 
 
+def filled(volume: Surface, surface: Surface | None = None) -> Surface:
+    """A surface, or none at all, and what is behind it."""
+
+    def add(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
+        output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
+        tree.links.new(volume(tree), output.inputs["Volume"])
+        if surface is not None:
+            return surface(tree)
+        nothing: bpy.types.NodeSocket = tree.nodes.new("NodeReroute").outputs[0]
+        return nothing
+
+    return add
+
+
+def _in_a_box(surface: Surface, low: common.Point, high: common.Point) -> None:
+    """A diffuse ball in a box, and one more beside it."""
+    add_polygons("Box", common.box_faces(low, high), surface)
+    cases.add_ball(shader("BsdfDiffuse", Color=(0.8, 0.8, 0.8)))
+
+
+def _through_colored_glass() -> None:
+    _in_a_box(filled(GREEN, shader("BsdfGlass", IOR=1.45)), (-1.2, -1.6, 0.02), (1.2, -1.3, 2.5))
+    cases.add_light("world")
+
+
+def _ball_of_colored_glass() -> None:
+    cases.add_ball(filled(GREEN, shader("BsdfPrincipled", Roughness=0.0, Transmission_Weight=1.0)))
+    cases.add_light("world")
+
+
+def _in_clear_haze() -> None:
+    """Seen, lit and casting its shadow through what has no surface."""
+    _in_a_box(filled(GREEN), (-1.1, -1.3, -0.1), (0.4, 1.3, 2.2))
+    cases.add_lamp(cases.MATERIAL_LAMP)
+
+
+def _in_two_hazes() -> None:
+    """Where they overlap both absorb light."""
+    add_polygons("Other", common.box_faces((-0.3, -1.5, -0.1), (1.2, 0.9, 1.1)), filled(_mixed_volume))
+    _in_clear_haze()
+
+
+def _in_water() -> None:
+    """Light comes to the ball and from it through a face that refracts."""
+    _in_a_box(filled(GREEN, shader("BsdfGlass", IOR=1.33)), (-1.1, -1.1, 0.01), (1.1, 1.1, 2.0))
+    cases.add_light("world")
+
+
+def _under_water() -> None:
+    """All of it, camera and lamp too."""
+    _in_a_box(
+        filled(shader("VolumeAbsorption", Color=GOLD, Density=0.1)), (-9.0, -9.0, -1.0), (9.0, 9.0, 9.0)
+    )
+    cases.add_lamp(cases.MATERIAL_LAMP)
+
+
+def _mixed_volume(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
+    thin = shader("VolumeAbsorption", Color=RED, Density=0.3)
+    return joined("AddShader", thin, joined("MixShader", thin, GREEN, factor=0.3))(tree)
+
+
 def _below_an_emitter(surface: Surface) -> Callable[[], None]:
     def add() -> None:
         cases.add_ball(shader("BsdfDiffuse", Color=BLUE))
@@ -158,6 +220,12 @@ PATHS: dict[str, Callable[[], None]] = {
     "translucent_screen": _before_a_screen,
     "thin_glass": _behind_a_pane,
     "total_inner_reflection": _block_of_glass,
+    "colored_glass": _through_colored_glass,
+    "colored_glass_ball": _ball_of_colored_glass,
+    "absorbing_haze": _in_clear_haze,
+    "absorbing_hazes": _in_two_hazes,
+    "absorbing_water": _in_water,
+    "under_water": _under_water,
     "checkered_emitter": _below_an_emitter(textured("TexChecker", 4.0)),
     "noisy_emitter": _below_an_emitter(textured("TexNoise", 3.0)),
     "measured_emitter": _below_a_luminaire,

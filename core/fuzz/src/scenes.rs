@@ -54,7 +54,8 @@ fn material(draw: &mut Draw<'_>, textures: usize) -> MaterialRecord {
     let closures = Value::Array(draw.list(2, |draw| record(draw, CLOSURE, Known::default())));
     let program = if draw.flag() { program(draw, textures) } else { Value::Null };
     let name = value(draw, Kind::Name, Known::default());
-    let entries = [("name", name), ("closures", closures), ("program", program)];
+    let absorption = value(draw, Kind::Numbers(3), Known::default());
+    let entries = [("name", name), ("closures", closures), ("program", program), ("absorption", absorption)];
     read(&Value::Map(entries.map(|(name, value)| (name.into(), value)).to_vec()))
 }
 

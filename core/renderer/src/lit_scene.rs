@@ -2,6 +2,7 @@
 
 mod emitters;
 mod hit_point;
+mod medium;
 mod motion;
 
 use glam::{DVec3, Vec3};
@@ -14,6 +15,7 @@ use crate::effects_plan::EffectsPlan;
 use crate::light::{Lights, Receiver};
 use crate::scene::visibility;
 use hit_point::HitPoint;
+pub use medium::Medium;
 
 /// Everything a pass asks of the scene.
 pub struct LitScene<'a> {
@@ -42,6 +44,10 @@ pub struct Surface<'a> {
     pub time: f32,
     /// Bit of its object's set of receivers.
     pub sets: u32,
+    /// What the ray came through; clear where nobody said.
+    pub medium: Medium,
+    /// What its object is full of.
+    solid: Medium,
 }
 
 impl Surface<'_> {
@@ -81,7 +87,8 @@ impl<'a> LitScene<'a> {
             }
         };
         let (p, sets) = (ray.origin + ray.direction * hit.t, self.receiver_sets(hit.object));
-        Surface { p, ng, bsdf, hit, time: ray.time, sets }
+        let (medium, solid) = (Medium::CLEAR, self.solid(&hit));
+        Surface { p, ng, bsdf, hit, time: ray.time, sets, medium, solid }
     }
 
     /// Bit of an object's set of receivers.

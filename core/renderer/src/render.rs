@@ -70,7 +70,7 @@ pub fn trace_floor(
     let [_, _, width, height] = scene.camera.region;
     let film = Film::new(width, height, &settings.film);
     threads(settings)?.install(|| {
-        let lit = light(scene, settings, library, &progress)?;
+        let lit = light(scene, &MaterialTable::build(&scene.materials), settings, library, &progress)?;
         Ok(gather::trace_floor(&Gatherer::new(&lit, &Path, None, settings), &film))
     })
 }
@@ -94,9 +94,13 @@ fn passes(
         images: scene.textures.len(),
         bytes: scene.textures.iter().map(Texture::bytes).sum(),
     };
-    let mut lit = light(scene, settings, library, progress)?;
+    let materials = MaterialTable::build(&scene.materials);
+    let told = materials.problems.iter().map(|p| format!("material '{}': {}", p.subject, p.message));
+    stats.warnings.extend(told);
+    let mut lit = light(scene, &materials, settings, library, progress)?;
     let catchers = lit.plan.shadow_catcher.then(|| scene.without_objects());
-    let without = catchers.as_ref().map(|catchers| light_without(catchers, settings, library, progress));
+    let without =
+        catchers.as_ref().map(|catchers| light_without(catchers, &materials, settings, library, progress));
     let without = without.transpose()?;
     stats.seconds.accel = clock.elapsed().as_secs_f64();
     stats.effects = lit.plan.report();
@@ -302,12 +306,12 @@ impl Work<'_> {
 /// Materials, lights, tree and plan.
 fn light<'a>(
     scene: &'a Scene,
+    materials: &MaterialTable,
     settings: &RenderSettings,
     library: &path::Path,
     progress: &Progress,
 ) -> Result<LitScene<'a>, RenderError> {
-    let mut materials: Vec<PreparedMaterial> =
-        MaterialTable::build(&scene.materials).iter().cloned().collect();
+    let mut materials: Vec<PreparedMaterial> = materials.iter().cloned().collect();
     let mut world = scene.world.clone();
     let environment = if settings.effects.environment_light == Switch::Off {
         None
@@ -334,13 +338,14 @@ fn light<'a>(
 /// As [`light`], for a scene whose light is gathered without photons.
 fn light_without<'a>(
     scene: &'a Scene,
+    materials: &MaterialTable,
     settings: &RenderSettings,
     library: &path::Path,
     progress: &Progress,
 ) -> Result<LitScene<'a>, RenderError> {
     let mut settings = settings.clone();
     settings.gather.estimator = EstimatorKind::Path;
-    light(scene, &settings, library, progress)
+    light(scene, materials, &settings, library, progress)
 }
 
 /// Points beyond this share on either side do not decide how fine the cells are.

@@ -32,7 +32,12 @@ impl Linked {
                 .map(|(register, &(closure, coat))| NormalRecord { closure, coat, register })
                 .collect(),
         };
-        let material = Material { name: "test".into(), closures: closures.collect(), program: Some(program) };
+        let material = Material {
+            name: "test".into(),
+            closures: closures.collect(),
+            program: Some(program),
+            absorption: Rgb::BLACK,
+        };
         Self(MaterialTable::build(&[material]))
     }
 

@@ -6,7 +6,7 @@ mod support;
 use glam::{DMat4, DVec3, Vec3};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::effects_plan::Effect;
-use rgp_renderer::scene::record::{CameraRecord, ClosureRecord, LensRecord};
+use rgp_renderer::scene::record::{CameraRecord, ClosureRecord, LensRecord, MaterialRecord};
 use rgp_renderer::scene::{Scene, SceneBuilder, visibility};
 use rgp_renderer::settings::{EffectSettings, RenderSettings, Switch};
 use rgp_renderer::stats::EffectStats;
@@ -34,7 +34,8 @@ fn builder_of_everything(pixels: u32, shade: f32) -> SceneBuilder {
     let low = Vec3::splat(-1.0);
     place(&mut builder, cuboid(low, Vec3::new(1.0, 1.0, -0.95)), std::slice::from_ref(&walls));
     place(&mut builder, cuboid(Vec3::new(-1.0, 0.95, -1.0), Vec3::splat(1.0)), &[walls]);
-    place(&mut builder, ball, &[glass]);
+    let absorption = Rgb([0.5, 1.0, 2.0]);
+    place(&mut builder, ball, &[MaterialRecord { absorption, ..glass }]);
     let steps = [-0.02, 0.02].map(|x| DMat4::from_translation(DVec3::X * x));
     builder.set_object_motion(2, &steps).expect("two steps of the ball");
     place(&mut builder, sphere(3, 0.3, Vec3::new(0.8, 0.1, -0.6)), &[glossy(0.8 * shade, 0.7)]);
@@ -177,7 +178,10 @@ fn on_changes_nothing_where_nothing_calls_for_it() {
 fn a_diffuse_room_pays_for_nothing_else() {
     let picture = finish_and_render(Room::default().builder(), &switched(Switch::Auto, &[]));
     let called_for = Effect::ALL.map(|effect| of(&picture, effect).called_for);
-    assert_eq!(called_for, [true, true, false, false, false, false, false, false, false, false, false]);
+    assert_eq!(
+        called_for,
+        [true, true, false, false, false, false, false, false, false, false, false, false]
+    );
     assert_eq!((picture.stats.pyramid.bins, picture.stats.pyramid.glossy_cells), (0, 0));
     let rays = picture.stats.rays;
     let own: u64 = picture.stats.effects.iter().map(|effect| effect.rays).sum();
@@ -198,8 +202,10 @@ fn off_leaves_out() {
         let also_follows = effect == Effect::IndirectDiffuse;
         assert!(also_follows || traced_or_stored == (0, 0, 0), "{effect:?}: {traced_or_stored:?}");
         assert_ne!(bits(&off), bits(&all), "{effect:?}");
-        let brings_light =
-            !matches!(effect, Effect::DepthOfField | Effect::MotionBlur | Effect::ShadowCatcher);
+        let brings_light = !matches!(
+            effect,
+            Effect::Absorption | Effect::DepthOfField | Effect::MotionBlur | Effect::ShadowCatcher
+        );
         assert!(!brings_light || mean(&off.radiance()) < mean(&all.radiance()), "{effect:?} brings light");
     }
     let bare = render(&scene, &switched(Switch::Off, &Effect::ALL));

@@ -16,7 +16,7 @@ const PANEL: LampShape = LampShape::Rectangle { size: [0.3, 0.2], spread: FULL }
 /// Number of lamps a ray from `from` along `wi` meets, suns included.
 fn crossed(lights: &Lights, from: Vec3, wi: Vec3, t_max: f32, kind: u32) -> usize {
     let mut count = 0;
-    lights.lamps_crossed(from, wi, 0.0..t_max, kind, &mut |_, _| count += 1);
+    lights.lamps_crossed(from, wi, 0.0..t_max, kind, &mut |_, _, _| count += 1);
     lights.suns(from, wi, kind, &mut |_, _| count += 1);
     count
 }
@@ -215,7 +215,7 @@ proptest! {
                 let mut check = |radiance: Rgb, pdf: f32| {
                     fine &= radiance.0.iter().all(|c| *c >= 0.0 && c.is_finite()) && pdf >= 0.0;
                 };
-                lights.lamps_crossed(from, sample.wi, 0.0..f32::INFINITY, KIND, &mut check);
+                lights.lamps_crossed(from, sample.wi, 0.0..f32::INFINITY, KIND, &mut |r, pdf, _| check(r, pdf));
                 lights.suns(from, sample.wi, KIND, &mut check);
                 prop_assert!(fine, "{sample:?}");
             }

@@ -135,7 +135,7 @@ fn rays_that_meet_a_lamp_see_what_shadow_rays_bring() {
                 }
                 assert_close(f64::from(pdf), f64::from(sample.pdf_solid_angle), 1e-3);
             };
-            lights.lamps_crossed(p, sample.wi, 0.0..f32::INFINITY, KIND, &mut compare);
+            lights.lamps_crossed(p, sample.wi, 0.0..f32::INFINITY, KIND, &mut |r, pdf, _| compare(r, pdf));
             lights.suns(p, sample.wi, KIND, &mut compare);
         }
     }

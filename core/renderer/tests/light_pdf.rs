@@ -65,7 +65,7 @@ fn met(scene: &Scene, lights: &Lights, emission: &[Rgb], wi: Vec3, normal: Optio
         radiance += f64::from(r.0[0]);
         pdf += f64::from(p);
     };
-    lights.lamps_crossed(receiver, wi, 0.0..f32::INFINITY, KIND, &mut add);
+    lights.lamps_crossed(receiver, wi, 0.0..f32::INFINITY, KIND, &mut |r, p, _| add(r, p));
     lights.suns(receiver, wi, KIND, &mut add);
     for (index, object) in scene.objects.iter().enumerate() {
         for primitive in 0..object.mesh.triangles.len() {
@@ -232,7 +232,7 @@ fn proxies_hold_every_lamp() {
             let aim = Vec3::new(0.0, 0.0, 0.25) + random.direction() * (0.25 * random.uniform());
             let wi = (aim - from).normalize();
             let mut crossed = false;
-            lights.lamps_crossed(from, wi, 0.0..f32::INFINITY, KIND, &mut |_, _| crossed = true);
+            lights.lamps_crossed(from, wi, 0.0..f32::INFINITY, KIND, &mut |_, _, _| crossed = true);
             if crossed {
                 met += 1;
                 let proxy = &proxies[0];

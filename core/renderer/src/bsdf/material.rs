@@ -60,6 +60,7 @@ pub struct PreparedMaterial {
     /// Of a material whose closures differ from point to point: what makes them. Its own are typical ones.
     varying: Option<Box<Varying>>,
     left_out: LeftOut,
+    absorption: Rgb,
 }
 
 impl PreparedMaterial {
@@ -69,6 +70,7 @@ impl PreparedMaterial {
         let mut sanitizer = Sanitizer::default();
         let mut prepared = Self::of_closures(&material.closures, Normals::default(), &mut sanitizer);
         prepared.finish();
+        prepared.absorption = sanitizer.absorption(material.absorption);
         sanitizer.report(&material.name, problems);
         if let Some(program) = &material.program {
             prepared.vary(Varying::new(&material.closures, program));
@@ -233,6 +235,11 @@ impl PreparedMaterial {
         }
     }
 
+    /// Makes the solid that the surface bounds clear.
+    pub fn leave_out_absorption(&mut self) {
+        self.absorption = Rgb::BLACK;
+    }
+
     /// The material as it is at one point, where the program of `varying` gave `registers`; `normals` are those it has
     /// there ([`Varying::normals`]), on the mesh's own side.
     #[must_use]
@@ -277,6 +284,12 @@ impl PreparedMaterial {
     #[must_use]
     pub fn refracts(&self) -> bool {
         self.refracts
+    }
+
+    /// Absorption coefficient of the solid that the surface bounds (1/m).
+    #[must_use]
+    pub fn absorption(&self) -> Rgb {
+        self.absorption
     }
 
     /// True when no light passes through: straight, refracted or scattered.

@@ -10,6 +10,9 @@ const IOR: [f32; 2] = [1e-2, 100.0];
 /// Largest emission kept, so that sums and products stay finite.
 const BRIGHTEST: f32 = 1e15;
 
+/// Largest absorption coefficient kept (1/m), so that its product with any distance stays finite.
+const DARKEST: f32 = 1e15;
+
 /// Brings values into range and counts what it changed, for one material.
 #[derive(Debug, Default)]
 pub(super) struct Sanitizer {
@@ -39,6 +42,11 @@ impl Sanitizer {
     /// Share of a closure. Mix Shader keeps it within 0 and 1.
     pub(super) fn weight(&mut self, weight: Rgb) -> Rgb {
         self.color(weight, 1.0)
+    }
+
+    /// An absorption coefficient (1/m).
+    pub(super) fn absorption(&mut self, coefficient: Rgb) -> Rgb {
+        self.color(coefficient, DARKEST)
     }
 
     /// A sum of shares that must not exceed 1.

@@ -17,7 +17,7 @@ use crate::stats::EffectStats;
 pub use costs::{Costs, Meter, Owner};
 
 /// Number of effects.
-pub const EFFECTS: usize = 11;
+pub const EFFECTS: usize = 12;
 
 /// One effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +38,8 @@ pub enum Effect {
     EmissiveMeshes,
     /// Surfaces that let light straight through.
     AlphaTransparency,
+    /// What light loses on its way through colored glass and water.
+    Absorption,
     /// Blur of what is not in focus.
     DepthOfField,
     /// Blur of what moves while the shutter is open.
@@ -57,6 +59,7 @@ impl Effect {
         Self::EnvironmentLight,
         Self::EmissiveMeshes,
         Self::AlphaTransparency,
+        Self::Absorption,
         Self::DepthOfField,
         Self::MotionBlur,
         Self::ShadowCatcher,
@@ -74,6 +77,7 @@ impl Effect {
             Self::EnvironmentLight => "environment_light",
             Self::EmissiveMeshes => "emissive_meshes",
             Self::AlphaTransparency => "alpha_transparency",
+            Self::Absorption => "absorption",
             Self::DepthOfField => "depth_of_field",
             Self::MotionBlur => "motion_blur",
             Self::ShadowCatcher => "shadow_catcher",
@@ -107,6 +111,7 @@ impl Effect {
             Self::EnvironmentLight => settings.environment_light,
             Self::EmissiveMeshes => settings.emissive_meshes,
             Self::AlphaTransparency => settings.alpha_transparency,
+            Self::Absorption => settings.absorption,
             Self::DepthOfField => settings.depth_of_field,
             Self::MotionBlur => settings.motion_blur,
             Self::ShadowCatcher => settings.shadow_catcher,
@@ -167,6 +172,8 @@ pub struct EffectsPlan {
     pub reads: LobeSet,
     /// Surfaces let light straight through: shadow rays have to look.
     pub transparency: bool,
+    /// Solids absorb light: rays have to know what they are in.
+    pub absorption: bool,
     /// Camera rays pass through the lens.
     pub depth_of_field: bool,
     /// Caustics that the eye sees are called for, whether they are computed or not.
@@ -208,6 +215,7 @@ impl EffectsPlan {
             has_casters: planned[Effect::Caustics as usize].because.is_some(),
             reads,
             transparency: computed(Effect::AlphaTransparency),
+            absorption: computed(Effect::Absorption),
             depth_of_field: computed(Effect::DepthOfField),
             motion_blur: computed(Effect::MotionBlur) && moves(scene),
             shadow_catcher: computed(Effect::ShadowCatcher) && scene.catcher().is_some(),
@@ -291,17 +299,19 @@ fn leave_out_parts(
     settings: &EffectSettings,
     materials: &mut [PreparedMaterial],
     world: &mut World,
-) -> [Planned; 4] {
+) -> [Planned; 5] {
     let sharp = first(scene, used, materials, sharp_kind);
     let emissive = first(scene, used, materials, |m| (!m.emission().is_black()).then_some("emission"));
     let transparent =
         first(scene, used, materials, |m| (!m.transparency().is_black()).then_some("transparency"));
+    let absorption = first(scene, used, materials, |m| (!m.absorption().is_black()).then_some("absorption"));
     let color = world_reason(world);
     let parts = [
         (Effect::MirrorsAndGlass, sharp),
         (Effect::EnvironmentLight, color),
         (Effect::EmissiveMeshes, emissive),
         (Effect::AlphaTransparency, transparent),
+        (Effect::Absorption, absorption),
     ]
     .map(|(effect, because)| Planned { effect, switch: effect.switch(settings), because });
     for part in parts.iter().filter(|part| !part.is_computed() && part.because.is_some()) {
@@ -313,6 +323,7 @@ fn leave_out_parts(
             Effect::AlphaTransparency => {
                 materials.iter_mut().for_each(PreparedMaterial::leave_out_transparency);
             }
+            Effect::Absorption => materials.iter_mut().for_each(PreparedMaterial::leave_out_absorption),
             _ => world.blacken(),
         }
     }

@@ -17,7 +17,7 @@ use crate::accel::{Hit, LANES, Ray};
 use crate::caustic_map::CausticMap;
 use crate::color::Rgb;
 use crate::estimator::{Estimator, Footprint, Path};
-use crate::lit_scene::LitScene;
+use crate::lit_scene::{LitScene, Medium};
 use crate::pyramid::{Place, Pyramid};
 use crate::sampling::{Rng, hash};
 use crate::settings::RenderSettings;
@@ -73,8 +73,14 @@ impl<E: Estimator> Block<'_, '_, E> {
         let read = self.samples[lane].indirect - before;
         let key = hash(self.keys[lane], u64::from(index) << 16 | 6);
         let mapped = self.share_of_mapped(lane, &gather_ray);
-        let audited =
-            auditor.follow((self.packet.ray(lane), hit), &gather_ray, solid_angle, mapped, read, key);
+        let audited = auditor.follow(
+            (self.packet.ray(lane), hit, self.medium(lane)),
+            &gather_ray,
+            solid_angle,
+            mapped,
+            read,
+            key,
+        );
         self.traces.audited.push(audited);
     }
 }
@@ -107,11 +113,11 @@ impl<'a> Auditor<'a> {
         (drawn & 0xFFFF_FFFF_FFFF).is_multiple_of(self.packets).then_some(lane)
     }
 
-    /// Follows the hit of a gather ray for which the picture took `read`.
+    /// Follows the hit of a gather ray, which starts in a medium, for which the picture took `read`.
     #[inline(never)]
     pub(super) fn follow(
         &self,
-        (ray, hit): (Ray, Hit),
+        (ray, hit, medium): (Ray, Hit, Medium),
         gather_ray: &GatherRay,
         solid_angle: f32,
         mapped: Mapped,
@@ -132,6 +138,7 @@ impl<'a> Auditor<'a> {
             width,
             mapped: Rgb::WHITE,
             moved: 0.0,
+            medium,
         };
         let met = g.meet(ray, Some(Some(hit)), sampled, &mut rng, &mut traces.meter, &mut end);
         let footprint = Footprint { solid_angle, travelled: met.distance, sharp: gather_ray.sharp };

@@ -11,7 +11,7 @@ use crate::color::Rgb;
 use crate::effects_plan::Effect;
 use crate::estimator::Estimator;
 use crate::film::{BLOCK, PixelSample, TileRect};
-use crate::lit_scene::ray_kind;
+use crate::lit_scene::{Medium, ray_kind};
 use crate::sampling::{PixelSeeds, Rng, hash, shuffled_point, shuffled_points};
 use crate::scene::{MIDDLE, visibility};
 use crate::settings::GatherSampling;
@@ -48,6 +48,8 @@ pub(super) struct Block<'a, 'g, E: Estimator> {
     start: [f32; LANES],
     /// See [`CameraRay`].
     moved: [f32; LANES],
+    /// What each camera ray starts in.
+    medium: [Medium; LANES],
     /// Of the packet: gather rays that did not start on a constant Lambert surface.
     pub(super) others: [Option<GatherRay>; LANES],
     pub(super) traces: Traces<E::Place>,
@@ -69,6 +71,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             packet: Packet::default(),
             start: [0.0; LANES],
             moved: [0.0; LANES],
+            medium: [Medium::CLEAR; LANES],
             others: [None; LANES],
             traces: Traces::default(),
         }
@@ -145,6 +148,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
                 }
             };
             (self.start[lane], self.moved[lane]) = (start, moved);
+            self.medium[lane] = g.lit.medium_at(ray.origin, time, &mut self.traces.meter);
             self.packet.set(lane, &ray, reach);
         }
         self.seeds = PixelSeeds::new(&seeds);
@@ -174,7 +178,8 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let g = self.gatherer;
         let Some(hit) = hit.filter(|hit| !g.lit.accel.is_lamp(hit.object)) else { return false };
         let (ng, material) = g.lit.accel.triangle(hit.object, hit.primitive);
-        if g.sampling != GatherSampling::Cosine || g.is_holdout(&hit) || g.lit.moves(hit.object) {
+        let is_common = g.sampling == GatherSampling::Cosine && self.medium[lane].is_clear();
+        if !is_common || g.is_holdout(&hit) || g.lit.moves(hit.object) {
             return false;
         }
         let albedo = match g.plain[material] {
@@ -201,7 +206,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         let g = self.gatherer;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.sample) << 16 | 1));
         let mut sampled = Sampled::by_camera(g.camera_width.after(self.start[lane]));
-        sampled.moved = self.moved[lane];
+        (sampled.moved, sampled.medium) = (self.moved[lane], self.medium[lane]);
         let owner = self.traces.meter.owner();
         let (mut first, mut throughput) = (Some(hit), Rgb::WHITE);
         let transparent_film = g.lit.accel.scene().world.film_transparent;
@@ -234,6 +239,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             throughput *= sample.weight;
             (sampled.kind, sampled.sets) = (ray_kind(&sample), surface.sets);
             (sampled.width, sampled.moved) = (sampled.width.after(met.distance), 0.0);
+            sampled.medium = surface.medium_towards(sample.wi);
             ray = surface.leaving(sample.wi, sampled.kind | g.lit.accel.lamp_bit());
             self.traces.rays.camera += 1;
         }
@@ -256,7 +262,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             let [x, y] = shuffled_points(index, &seeds);
             for (lane, shadow) in shadows.iter_mut().enumerate() {
                 *shadow = self.shadow(lane, [rotate(self.keys[lane], index), x[lane], y[lane]]);
-                let traced = shadow.as_ref().filter(|s| s.can_be_blocked() && !g.lit.plan.transparency);
+                let traced = shadow.as_ref().filter(|shadow| shadow.is_all_or_nothing(g.lit));
                 if let Some(shadow) = traced {
                     self.packet.set(lane, &shadow.ray, shadow.t_far);
                     self.traces.rays.shadow += 1;

@@ -7,7 +7,7 @@ use crate::bsdf::LobeSet;
 use crate::color::Rgb;
 use crate::effects_plan::{Effect, Meter};
 use crate::light::DirectSample;
-use crate::lit_scene::{LitScene, Surface, lobes_lit};
+use crate::lit_scene::{LitScene, Medium, Surface, lobes_lit};
 use crate::sampling::power_heuristic;
 use crate::scene::visibility;
 
@@ -46,11 +46,18 @@ pub(super) struct ShadowRay {
     pub(super) t_far: f32,
     /// Radiance towards the viewer if the light is seen, weighted against BSDF samples.
     pub(super) radiance: Rgb,
+    /// What it starts in.
+    medium: Medium,
 }
 
 impl ShadowRay {
+    /// True where light arrives as it left, or not at all.
+    pub(super) fn is_all_or_nothing(&self, lit: &LitScene<'_>) -> bool {
+        self.can_be_blocked() && !lit.plan.transparency && self.medium.is_clear()
+    }
+
     /// False where the light passes through everything.
-    pub(super) const fn can_be_blocked(&self) -> bool {
+    const fn can_be_blocked(&self) -> bool {
         self.ray.mask != 0
     }
 }
@@ -80,7 +87,7 @@ pub(super) fn shadow_ray(
     let cos = sample.wi.dot(bsdf.frame.ns).abs();
     let radiance = f * sample.radiance_over_pdf * (cos * weight);
     let ray = surface.leaving(sample.wi, sample.blockers);
-    Some(ShadowRay { ray, t_far: reach(sample), radiance })
+    Some(ShadowRay { ray, t_far: reach(sample), radiance, medium: surface.medium_towards(sample.wi) })
 }
 
 /// As [`shadow_ray`], for a camera sample on a constant Lambert surface; the radiance is what the camera sees.
@@ -103,7 +110,7 @@ pub(super) fn lambert_shadow_ray(
     };
     let radiance = lanes.weight[lane] * sample.radiance_over_pdf * (pdf * weight);
     let ray = Ray::leaving(lanes.p[lane], lanes.ng[lane], sample.wi, sample.blockers, lanes.time[lane]);
-    Some(ShadowRay { ray, t_far: reach(sample), radiance })
+    Some(ShadowRay { ray, t_far: reach(sample), radiance, medium: Medium::CLEAR })
 }
 
 /// A shadow ray ends before the light's own surface, as far above it however flat it comes in: it starts beside the point
@@ -113,7 +120,7 @@ fn reach(sample: &DirectSample) -> f32 {
     (sample.distance * (1.0 - 1e-5) - 4.0 * OFFSET / cos).max(0.0)
 }
 
-/// Share of light that reaches the end of a shadow ray through transparent surfaces.
+/// Share of light that reaches the end of a shadow ray through transparent surfaces, and through what absorbs it.
 #[must_use]
 pub(super) fn transmittance<P>(lit: &LitScene<'_>, shadow: &ShadowRay, traces: &mut Traces<P>) -> Rgb {
     if !shadow.can_be_blocked() {
@@ -121,8 +128,9 @@ pub(super) fn transmittance<P>(lit: &LitScene<'_>, shadow: &ShadowRay, traces: &
     }
     traces.meter.count_own(1);
     if !lit.plan.transparency {
+        let absorbed = shadow.medium.transmittance(shadow.t_far);
         traces.rays.shadow += 1;
-        return if lit.accel.occluded(&shadow.ray, shadow.t_far) { Rgb::BLACK } else { Rgb::WHITE };
+        return if lit.accel.occluded(&shadow.ray, shadow.t_far) { Rgb::BLACK } else { absorbed };
     }
     let owner = traces.meter.owner();
     let through = transparencies(lit, shadow, &mut traces.rays.shadow, &mut traces.meter);
@@ -130,20 +138,25 @@ pub(super) fn transmittance<P>(lit: &LitScene<'_>, shadow: &ShadowRay, traces: &
     through
 }
 
-/// Product of the transparencies along a shadow ray.
+/// Product of the transparencies along a shadow ray, and of what is left between them.
 fn transparencies(lit: &LitScene<'_>, shadow: &ShadowRay, rays: &mut u64, meter: &mut Meter) -> Rgb {
     let (mut ray, mut left, mut through) = (shadow.ray, shadow.t_far, Rgb::WHITE);
+    let mut medium = shadow.medium;
     for _ in 0..MAX_TRANSPARENT {
         *rays += 1;
-        let Some(hit) = lit.accel.intersect(&ray).filter(|hit| hit.t < left) else { return through };
-        let surface = lit.surface(&ray, hit, 0.0);
-        through *= surface.bsdf.transparency;
+        let Some(hit) = lit.accel.intersect(&ray).filter(|hit| hit.t < left) else {
+            return through * medium.transmittance(left);
+        };
+        let mut surface = lit.surface(&ray, hit, 0.0);
+        surface.medium = medium;
+        through *= medium.transmittance(hit.t) * surface.bsdf.transparency;
         if through.is_black() {
             return through;
         }
         meter.enter(Effect::AlphaTransparency);
         meter.count(Effect::AlphaTransparency, 1);
         left -= hit.t;
+        medium = surface.medium_towards(ray.direction);
         ray = surface.leaving(ray.direction, ray.mask);
     }
     Rgb::BLACK

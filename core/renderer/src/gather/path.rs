@@ -11,7 +11,7 @@ use crate::color::Rgb;
 use crate::effects_plan::{Effect, Meter};
 use crate::estimator::{Estimator, Footprint};
 use crate::light::{Receiver, Sight};
-use crate::lit_scene::{Surface, lobes_lit, ray_kind};
+use crate::lit_scene::{Medium, Surface, lobes_lit, ray_kind};
 use crate::sampling::Rng;
 use crate::scene::visibility;
 
@@ -47,6 +47,8 @@ pub(super) struct Sampled {
     pub(super) mapped: Rgb,
     /// Distance from where the ray began to where it is traced from.
     pub(super) moved: f32,
+    /// What the ray starts in.
+    pub(super) medium: Medium,
 }
 
 impl Sampled {
@@ -62,6 +64,7 @@ impl Sampled {
             width,
             mapped: Rgb::WHITE,
             moved: 0.0,
+            medium: Medium::CLEAR,
         }
     }
 
@@ -86,7 +89,7 @@ pub(super) struct Met {
     pub(super) light: Rgb,
     /// Length of the ray.
     pub(super) distance: f32,
-    /// Share of light from the surface that arrives through what is transparent before it.
+    /// Share of light from the surface that arrives through what is transparent before it, and what absorbs light.
     pub(super) through: Rgb,
     /// Share of a camera ray that sees a hole in the picture. Where the object is one, there is no surface.
     pub(super) hole: f32,
@@ -122,22 +125,31 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         *end = None;
         let mut met = Met { light: Rgb::BLACK, distance: 0.0, through: Rgb::WHITE, hole: 0.0 };
         let (from, lit) = (sampled.receiver(ray.origin), self.lit);
+        let mut medium = sampled.medium;
         let mut known = first;
         for _ in 0..MAX_TRANSPARENT {
             let mut hit = known.take().unwrap_or_else(|| lit.accel.intersect(&ray));
             if hit.is_some_and(|hit| lit.accel.is_lamp(hit.object)) {
-                let (behind, light) = self.cross_lamps(from, &ray, met.distance, sampled, meter);
+                let (behind, light) =
+                    self.cross_lamps(from, &ray, met.distance, Sampled { medium, ..sampled }, meter);
                 met.light += met.through * light;
                 hit = behind;
             }
             let Some(hit) = hit else {
                 let world = lit.lights.has_world().then_some(Effect::EnvironmentLight);
                 meter.enter_if(world.or(sampled.light));
-                met.light += met.through * self.escaped(from, ray.direction, sampled);
+                let left = met.through * medium.transmittance(f32::INFINITY);
+                met.light += left * self.escaped(from, ray.direction, sampled);
                 return met;
             };
             met.distance += hit.t;
+            if !medium.is_clear() {
+                let owner = meter.enter(Effect::Absorption);
+                met.through = met.through * medium.transmittance(hit.t);
+                meter.back(owner);
+            }
             let surface = end.insert(lit.surface(&ray, hit, sampled.width.at(met.distance)));
+            surface.medium = medium;
             let by_camera = sampled.kind == visibility::CAMERA;
             let is_hole = by_camera && self.is_holdout(&hit);
             if !surface.bsdf.emission.is_black() && !is_hole {
@@ -160,6 +172,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
                 return met;
             }
             met.through = met.through * transparency * (1.0 / chance);
+            medium = surface.medium_towards(ray.direction);
             ray = surface.leaving(ray.direction, ray.mask);
             *end = None;
             meter.enter(Effect::AlphaTransparency);
@@ -170,7 +183,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
     }
 
     /// Lamps do not stop a ray: what is behind those that this one met first, and their light, weighted. `travelled` is how
-    /// far the ray's origin is from `from`, where the direction was chosen.
+    /// far the ray's origin is from `from`, where the direction was chosen; `sampled.medium` is what it is in there.
     pub(super) fn cross_lamps(
         &self,
         from: Receiver,
@@ -184,8 +197,10 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
         let mut light = Rgb::BLACK;
         let owner = meter.enter_if(sampled.light);
         let lights = &self.lit.lights;
-        lights.lamps_crossed(from, ray.direction, travelled..until, sampled.sight(), &mut |radiance, pdf| {
-            light += radiance * sampled.weight(pdf);
+        let span = travelled..until;
+        lights.lamps_crossed(from, ray.direction, span, sampled.sight(), &mut |radiance, pdf, distance| {
+            let left = sampled.medium.transmittance(distance - travelled);
+            light += left * radiance * sampled.weight(pdf);
         });
         meter.back(owner);
         (behind, light)
@@ -260,9 +275,10 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             }
             let kind = ray_kind(&sample);
             let ray = surface.leaving(sample.wi, kind | self.lit.accel.lamp_bit());
+            let medium = surface.medium_towards(sample.wi);
             target.traces.rays.gather += 1;
             let hit = self.lit.accel.intersect(&ray);
-            let readable = hit.filter(|_| !sample.is_delta).and_then(|hit| {
+            let readable = hit.filter(|_| !sample.is_delta && medium.is_clear()).and_then(|hit| {
                 self.readable(&ray, &hit, 0.0).or_else(|| self.readable_varying(&ray, &hit, 0.0))
             });
             let read = readable.and_then(|readable| {
@@ -276,7 +292,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             let lit_side = surface.bsdf.lit_side();
             let (shares, width) = (Shares::EVEN, Width::NONE);
             let (sets, mapped, moved) = (surface.sets, on_the_way, 0.0);
-            let sampled = Sampled { pdf, shares, kind, light, lit_side, sets, width, mapped, moved };
+            let sampled = Sampled { pdf, shares, kind, light, lit_side, sets, width, mapped, moved, medium };
             let met = self.meet(ray, Some(hit), sampled, rng, &mut target.traces.meter, end);
             if light.is_some() {
                 radiance += throughput * met.light;

@@ -4,6 +4,7 @@ use crate::accel::{Hit, LANES, Ray};
 use crate::color::Rgb;
 use crate::effects_plan::Effect;
 use crate::estimator::{Estimator, Footprint};
+use crate::lit_scene::Medium;
 use crate::sampling::{Rng, hash};
 use crate::scene::visibility;
 
@@ -38,9 +39,10 @@ impl<E: Estimator> Block<'_, '_, E> {
                 Some(hit) if g.lit.accel.is_lamp(hit.object) => self.cross_lamps(lane, &ray, solid_angle),
                 hit => hit,
             };
+            let can_be_read = !ray.sharp && self.medium(lane).is_clear();
             // No closure: it would not be compiled for the wider instructions.
             let readable = match hit {
-                Some(hit) if !ray.sharp => g.readable(&self.packet.ray(lane), &hit, solid_angle),
+                Some(hit) if can_be_read => g.readable(&self.packet.ray(lane), &hit, solid_angle),
                 _ => None,
             };
             match readable {
@@ -51,7 +53,7 @@ impl<E: Estimator> Block<'_, '_, E> {
                 }
                 None => {
                     let varying = hit
-                        .filter(|_| g.has_varying && !ray.sharp)
+                        .filter(|_| g.has_varying && can_be_read)
                         .and_then(|hit| g.readable_varying(&self.packet.ray(lane), &hit, solid_angle));
                     if let Some(readable) = varying {
                         places[lane] = readable.place;
@@ -159,6 +161,18 @@ impl<E: Estimator> Block<'_, '_, E> {
             width: Width::of_solid_angle(solid_angle),
             mapped: Rgb::WHITE,
             moved: 0.0,
+            medium: self.medium(lane),
+        }
+    }
+
+    /// What the gather ray of a lane starts in.
+    #[inline(always)]
+    pub(super) fn medium(&self, lane: usize) -> Medium {
+        match &self.vertices[lane] {
+            Some(vertex) if self.gatherer.lit.plan.absorption => {
+                vertex.surface.medium_towards(self.packet.ray(lane).direction)
+            }
+            _ => Medium::CLEAR,
         }
     }
 

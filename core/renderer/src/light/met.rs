@@ -45,9 +45,9 @@ impl Lights {
         which.map_or(0.0, |which| self.choice_probability(&from, self.first_emitter[index] + which))
     }
 
-    /// Calls back, for each lamp the ray meets at a distance in `span`, with its radiance and the pdf per solid angle
-    /// with which [`Lights::sample_direct`] from `from` finds this direction: infinite where rays that are drawn from
-    /// surfaces do not meet the lamp. Lamps do not block. Those hidden from the ray's kind and those that do not light the
+    /// Calls back, for each lamp the ray meets at a distance in `span`, with its radiance, the pdf per solid angle with which
+    /// [`Lights::sample_direct`] from `from` finds this direction, and the distance. The pdf is infinite where rays that are
+    /// drawn from surfaces do not meet the lamp. Lamps do not block. Those hidden from the ray's kind and those that do not light the
     /// receiver are skipped, as are suns and lamps that no ray meets.
     pub fn lamps_crossed(
         &self,
@@ -55,7 +55,7 @@ impl Lights {
         wi: Vec3,
         span: Range<f32>,
         sight: impl Into<Sight>,
-        each: &mut dyn FnMut(Rgb, f32),
+        each: &mut dyn FnMut(Rgb, f32, f32),
     ) {
         let (receiver, sight) = (from.into(), sight.into());
         let ray = Ray { from: receiver.p, wi, span };
@@ -73,7 +73,8 @@ impl Lights {
                 let distance = crossing.distance;
                 let look = Look { from: ray.from, wi, distance, before: sight.moved };
                 let radiance = light.shown(crossing.radiance, &look);
-                each(radiance * self.share(index, sight), self.pdf_against(&receiver, index, crossing.pdf));
+                let pdf = self.pdf_against(&receiver, index, crossing.pdf);
+                each(radiance * self.share(index, sight), pdf, distance);
             }
         }
     }

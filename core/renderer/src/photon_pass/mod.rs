@@ -20,7 +20,7 @@ use crate::color::Rgb;
 use crate::effects_plan::{Costs, Effect, Meter};
 use crate::error::RenderError;
 use crate::estimator::{Landing, PhotonSink};
-use crate::lit_scene::{LitScene, lobes_lit, ray_kind};
+use crate::lit_scene::{LitScene, Medium, lobes_lit, ray_kind};
 use crate::progress::Progress;
 use crate::pyramid::SETS;
 use crate::sampling::PhotonSampler;
@@ -151,7 +151,7 @@ impl<S: PhotonSink> Tracer<'_, S> {
             Carry::Caustics => lit.emit_to_casters(std::array::from_fn(|_| sampler.draw()), time),
         };
         let Some(emission) = emission else { return 0 };
-        let flux = emission.flux * self.share;
+        let mut flux = emission.flux * self.share;
         let leaving = match emission.normal {
             Some(normal) => {
                 Ray::leaving(emission.origin, normal, emission.direction, visibility::DIFFUSE, time).origin
@@ -162,23 +162,26 @@ impl<S: PhotonSink> Tracer<'_, S> {
         let mask = visibility::DIFFUSE | visibility::SHADOW;
         let (mut ray, mut travelled) = self.lit.entering(leaving.as_dvec3(), emission.direction, mask, time);
         let lobes = lobes_lit(emission.visibility);
+        let mut medium = lit.medium_at(leaving, time, meter);
         let mut segments = 0;
         for _ in 0..MAX_PASSED_THROUGH {
             segments += 1;
             meter.count_own(1);
             let Some(hit) = self.lit.accel.intersect(&ray) else { break };
             travelled += hit.t;
+            flux *= medium.transmittance(hit.t);
             let visible_to = self.lit.accel.scene().objects[hit.object as usize].visibility;
             let is_blocked = visible_to & emission.blockers != 0;
             if travelled >= emission.lit_from && visible_to & visibility::DIFFUSE != 0 {
                 let (sets, shaded) = (emission.receivers, emission.shaded);
-                let arrival = Arrival { ray, hit, flux, lobes, sets, shaded, is_blocked };
+                let arrival = Arrival { ray, hit, medium, flux, lobes, sets, shaded, is_blocked };
                 segments += self.scatter(arrival, &mut sampler, landed, meter);
             }
             if is_blocked {
                 break;
             }
             let ng = self.lit.normal_met(&ray, &hit);
+            medium = self.lit.medium_behind(medium, &ray, &hit, ng);
             ray = Ray::leaving(ray.origin + ray.direction * hit.t, ng, ray.direction, mask, time);
         }
         segments
@@ -193,10 +196,12 @@ impl<S: PhotonSink> Tracer<'_, S> {
         meter: &mut Meter,
     ) -> u64 {
         let (mut segments, mut thrown) = (0, self.carry == Carry::All);
-        let Arrival { mut ray, mut hit, mut flux, lobes: mut lit, mut sets, mut shaded, .. } = arrival;
+        let Arrival { mut ray, mut hit, mut medium, mut flux, .. } = arrival;
+        let Arrival { lobes: mut lit, mut sets, mut shaded, .. } = arrival;
         let mut passes = arrival.is_blocked;
         for _ in 0..self.max_depth {
-            let surface = self.lit.surface(&ray, hit, 0.0);
+            let mut surface = self.lit.surface(&ray, hit, 0.0);
+            surface.medium = medium;
             let bsdf = &surface.bsdf;
             let lobes = if sets & surface.sets == 0 { LobeSet::EMPTY } else { lit };
             let arrived = self.lit.lights.arrived(flux, shaded, ray.direction, surface.p);
@@ -235,6 +240,7 @@ impl<S: PhotonSink> Tracer<'_, S> {
                 break;
             }
             flux = flux * next.weight * (1.0 / survival);
+            medium = surface.medium_towards(next.direction);
             ray = surface.leaving(next.direction, next.kind);
             if !next.straight {
                 (lit, sets, thrown) = (LobeSet::ALL, u32::MAX, true);
@@ -245,10 +251,13 @@ impl<S: PhotonSink> Tracer<'_, S> {
             meter.count_own(1);
             let next_hit = self.lit.accel.intersect(&ray);
             meter.back(owner);
-            match next_hit {
-                Some(next_hit) => hit = next_hit,
-                None => break,
+            let Some(next_hit) = next_hit else { break };
+            if !medium.is_clear() {
+                let owner = meter.enter(Effect::Absorption);
+                flux *= medium.transmittance(next_hit.t);
+                meter.back(owner);
             }
+            hit = next_hit;
         }
         segments
     }
@@ -292,6 +301,8 @@ impl<S: PhotonSink> Tracer<'_, S> {
 struct Arrival {
     ray: Ray,
     hit: Hit,
+    /// What it came through.
+    medium: Medium,
     flux: Rgb,
     /// Lobes that it lights, and the sets of objects that it lights.
     lobes: LobeSet,

@@ -380,8 +380,8 @@ fn checked_program(
 }
 
 fn checked_material(record: MaterialRecord, textures: usize) -> Result<Material, RenderError> {
-    let MaterialRecord { name, mut closures, program } = record;
-    let Some(record) = program else { return Ok(Material { name, closures, program: None }) };
+    let MaterialRecord { name, mut closures, program, absorption } = record;
+    let Some(record) = program else { return Ok(Material { name, closures, program: None, absorption }) };
     let fault = |what: String| RenderError::Scene(format!("material '{name}': {what}"));
     let program = Program::new(record.instructions, textures).map_err(fault)?;
     for output in &record.outputs {
@@ -400,7 +400,7 @@ fn checked_material(record: MaterialRecord, textures: usize) -> Result<Material,
     }
     let (outputs, normal, normals) = (record.outputs, record.normal, record.normals);
     let program = MaterialProgram { program, outputs, normal, normals };
-    Ok(Material { name, closures, program: Some(program) })
+    Ok(Material { name, closures, program: Some(program), absorption })
 }
 
 /// The box about a box that was moved.

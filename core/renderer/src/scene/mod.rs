@@ -177,6 +177,8 @@ pub struct Material {
     pub closures: Vec<WeightedClosure>,
     /// What computes the inputs that vary.
     pub program: Option<MaterialProgram>,
+    /// Absorption coefficient of the solid that the surface bounds (1/m).
+    pub absorption: Rgb,
 }
 
 /// The part of a surface shader that differs from point to point.

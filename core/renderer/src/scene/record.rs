@@ -202,6 +202,9 @@ pub struct MaterialRecord {
     /// What computes the inputs that vary.
     #[serde(default)]
     pub program: Option<ProgramRecord>,
+    /// What light loses on its way through the solid that the surface bounds (1/m).
+    #[serde(default)]
+    pub absorption: Rgb,
 }
 
 /// Inputs of closures that differ from point to point, and how they are computed.
@@ -319,7 +322,7 @@ impl MaterialRecord {
     pub fn default_gray() -> Self {
         let closure = ClosureRecord::Diffuse { color: Rgb::splat(0.8) };
         let closures = vec![WeightedClosure { weight: Rgb::WHITE, closure }];
-        Self { name: "Default".into(), closures, program: None }
+        Self { name: "Default".into(), closures, program: None, absorption: Rgb::BLACK }
     }
 }
 

@@ -18,11 +18,14 @@ pub(crate) fn prepared(closure: ClosureRecord) -> PreparedMaterial {
 }
 
 pub(crate) fn mixed(closures: Vec<WeightedClosure>) -> PreparedMaterial {
-    PreparedMaterial::new(&Material { name: "test".into(), closures, program: None }, &mut Vec::new())
+    PreparedMaterial::new(
+        &Material { name: "test".into(), closures, program: None, absorption: Rgb::BLACK },
+        &mut Vec::new(),
+    )
 }
 
 pub(crate) fn table(closures: Vec<WeightedClosure>) -> MaterialTable {
-    MaterialTable::build(&[Material { name: "test".into(), closures, program: None }])
+    MaterialTable::build(&[Material { name: "test".into(), closures, program: None, absorption: Rgb::BLACK }])
 }
 
 pub(crate) fn diffuse(color: f32) -> ClosureRecord {

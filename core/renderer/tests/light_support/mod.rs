@@ -89,7 +89,8 @@ pub(crate) fn object(
 
 /// A scene in the unit cube; its camera is never used.
 pub(crate) fn scene(lamps: Vec<Lamp>, objects: Vec<Object>, world_radiance: f32) -> Scene {
-    let material = Material { name: "material".into(), closures: Vec::new(), program: None };
+    let material =
+        Material { name: "material".into(), closures: Vec::new(), program: None, absorption: Rgb::BLACK };
     Scene {
         space: SceneSpace { center: DVec3::ZERO, scale: 1.0 },
         objects,

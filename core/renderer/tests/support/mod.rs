@@ -123,6 +123,7 @@ pub(crate) fn material(closures: &[ClosureRecord]) -> MaterialRecord {
         name: "material".into(),
         closures: closures.iter().map(weighted).collect(),
         program: None,
+        absorption: Rgb::BLACK,
     }
 }
 
