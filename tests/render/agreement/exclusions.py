@@ -19,7 +19,9 @@ NOT_RENDERED: dict[str, str] = {
     "differ by up to 4.4% (RMS) where light fades",
     "shader/Principled BSDF, Subsurface": f"{_SUBSURFACE}; on a ball of 0.8 m at Scale 0.05 the mean is "
     "within 0.7%, pixels differ by up to 3.2% (RMS) where light fades",
-    "shader/volumes": _LEFT_OUT,
+    "shader/Volume Scatter, Principled Volume, Volume Coefficients that scatter or emit": _LEFT_OUT,
+    "shader/Volume Absorption that varies": _TYPICAL,
+    "world/volumes": _LEFT_OUT,
     "shader/Principled BSDF, Anisotropic": _LEFT_OUT,
     "shader/Principled BSDF, Thin Film": _LEFT_OUT,
     "shader/Principled BSDF, Diffuse Roughness": _LEFT_OUT,

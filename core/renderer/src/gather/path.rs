@@ -145,7 +145,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             met.distance += hit.t;
             if !medium.is_clear() {
                 let owner = meter.enter(Effect::Absorption);
-                met.through = met.through * medium.transmittance(hit.t);
+                met.through *= medium.transmittance(hit.t);
                 meter.back(owner);
             }
             let surface = end.insert(lit.surface(&ray, hit, sampled.width.at(met.distance)));
