@@ -168,12 +168,13 @@ impl<E: Estimator> Block<'_, '_, E> {
     /// What the gather ray of a lane starts in.
     #[inline(always)]
     pub(super) fn medium(&self, lane: usize) -> Medium {
-        match &self.vertices[lane] {
-            Some(vertex) if self.gatherer.lit.plan.absorption => {
-                vertex.surface.medium_towards(self.packet.ray(lane).direction)
-            }
-            _ => Medium::CLEAR,
-        }
+        if self.gatherer.lit.plan.absorption { self.medium_of_vertex(lane) } else { Medium::CLEAR }
+    }
+
+    #[inline(never)]
+    fn medium_of_vertex(&self, lane: usize) -> Medium {
+        let direction = self.packet.ray(lane).direction;
+        self.vertices[lane].as_ref().map_or(Medium::CLEAR, |vertex| vertex.surface.medium_towards(direction))
     }
 
     /// Adds the light that a gather ray met. What a mirror shows is no direct light, though it belongs to the same layer of
