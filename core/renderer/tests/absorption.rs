@@ -100,6 +100,22 @@ fn sunlight_through_slabs() {
     }
 }
 
+/// A lamp in the middle of a ball of haze, above a floor: shadow rays end in what absorbs.
+#[test]
+fn a_lamp_in_haze() {
+    let brightness = |absorption: f32| {
+        let mut builder = SceneBuilder::default();
+        place(&mut builder, floor(2.0, 0.0), &[diffuse(0.6)]);
+        place(&mut builder, sphere(5, 0.5, Vec3::Z), &[clear(Rgb::splat(absorption))]);
+        builder.add_lamp(point_lamp(10.0, DVec3::Z));
+        builder.set_camera(camera(DVec3::new(0.0, -1.0, 0.3), DVec3::ZERO, 0.2, 8));
+        let mut settings = settings(1000, 16, 4);
+        settings.effects.indirect_diffuse = Switch::Off;
+        mean(&finish_and_render(builder, &settings).radiance())
+    };
+    assert_close(brightness(2.0) / brightness(0.0), (-1.0_f64).exp(), 2e-3);
+}
+
 /// Of light that leaves a wall of a sphere by Lambert's law, the share that arrives at the wall again; `thickness` is the
 /// diameter times the absorption: ∫ exp(−thickness · cos) 2 cos dcos.
 fn arrives(thickness: f64) -> f64 {
