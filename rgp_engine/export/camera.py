@@ -54,7 +54,10 @@ def camera_view(context: ExportContext) -> tuple[list[list[float]], list[float]]
 def _frame_size(context: ExportContext) -> tuple[float, float]:
     """Width and height of the full frame, in square pixels."""
     engine, b_render = context.engine, context.b_depsgraph.scene_eval.render
-    width, height = engine.resolution_x * b_render.pixel_aspect_x, engine.resolution_y * b_render.pixel_aspect_y
+    width, height = (
+        engine.resolution_x * b_render.pixel_aspect_x,
+        engine.resolution_y * b_render.pixel_aspect_y,
+    )
     return width, height
 
 
@@ -94,8 +97,8 @@ def _focus_distance(b_object: Any) -> float:
 
 
 def camera_window(b_camera: Any, size: tuple[float, float], shift: tuple[float, float]) -> list[float]:
-    """Left, right, bottom and top of the full frame, in the unit of its projection: at distance 1 (perspective), in metres
-    (orthographic), or that of a panorama.
+    """Left, right, bottom and top of the full frame, at distance 1 (perspective), in metres (orthographic), or in the
+    unit of its panorama.
 
     The sensor spans the longer side of the frame, or the side that sensor fit names; shifts are fractions of that side,
     and of both sides of a panorama.

@@ -165,7 +165,10 @@ def test_fisheyes_have_a_lens_or_none(scene, export, fit, width, height):
     assert camera["window"] == pytest.approx([-1.5, 1.5, -1.5, 1.5])
     panorama(b_camera, "MIRRORBALL")
     camera = export().camera
-    assert camera["projection"] == {"kind": "fisheye_equisolid", "field_of_view": pytest.approx(2.0 * math.pi)}
+    assert camera["projection"] == {
+        "kind": "fisheye_equisolid",
+        "field_of_view": pytest.approx(2.0 * math.pi),
+    }
     assert camera["window"] == [-2.0, 2.0, -2.0, 2.0]
 
 

@@ -30,7 +30,16 @@ KINDS = {
     "mirror_ball": {"panorama_type": "MIRRORBALL"},
     "fisheye_equidistant": {"panorama_type": "FISHEYE_EQUIDISTANT", "fisheye_fov": 3.8},
     "fisheye_equisolid": {"panorama_type": "FISHEYE_EQUISOLID", "fisheye_fov": 3.4, "fisheye_lens": 9.0},
-    "fisheye_polynomial": {"panorama_type": "FISHEYE_LENS_POLYNOMIAL", "fisheye_fov": 2.6, "sensor_width": 60.0},
+    "fisheye_polynomial": {
+        "panorama_type": "FISHEYE_LENS_POLYNOMIAL",
+        "fisheye_fov": 1.9,
+        "sensor_width": 60.0,
+        "fisheye_polynomial_k0": -0.01,
+        "fisheye_polynomial_k1": -0.03,
+        "fisheye_polynomial_k2": -2e-4,
+        "fisheye_polynomial_k3": 1e-6,
+        "fisheye_polynomial_k4": 1e-8,
+    },
     "cylindrical": {
         "panorama_type": "CENTRAL_CYLINDRICAL",
         "central_cylindrical_range_u_min": -2.5,
@@ -52,6 +61,10 @@ def see_all_around(settings: dict[str, Any]) -> None:
         setattr(b_camera, name, value)
 
 
+def _level(z: float) -> list[common.Point]:
+    return [(-3.0, -3.0, z), (3.0, -3.0, z), (3.0, 3.0, z), (-3.0, 3.0, z)]
+
+
 def _wall(x: float = 0.0, y: float = 0.0) -> list[common.Point]:
     """A square that stands across at y, or along at x."""
     ends = [(x, -3.0), (x, 3.0)] if x else [(-3.0, y), (3.0, y)]
@@ -60,24 +73,28 @@ def _wall(x: float = 0.0, y: float = 0.0) -> list[common.Point]:
 
 
 def add_room(surface: Callable[[common.Color], cases.Surface]) -> None:
-    """Four walls, a ceiling and a ball, on the floor of `cases.py`; the camera stands among them and looks down a little."""
-    cases.add_floor_and_camera()
-    ceiling = [(-3.0, -3.0, 3.3), (3.0, -3.0, 3.3), (3.0, 3.0, 3.3), (-3.0, 3.0, 3.3)]
-    walls = {"Left": _wall(x=-3.0), "Right": _wall(x=3.0), "Back": _wall(y=3.0), "Front": _wall(y=-3.0)}
-    colors = (path_cases.RED, _GREEN, _GRAY, BLUE)
-    path_cases.add_polygons("Ceiling", [ceiling], surface(_GRAY))
-    for (name, wall), color in zip(walls.items(), colors, strict=True):
+    """A room and a ball; the camera stands beside it and looks down a little."""
+    common.add_camera(cases.CAMERA, (0.0, 0.0, 0.0), 1.0, RESOLUTION)
+    for name, wall, color in (
+        ("Floor", _level(0.0), cases.FLOOR_ALBEDO),
+        ("Ceiling", _level(3.3), _GRAY),
+        ("Left", _wall(x=-3.0), path_cases.RED),
+        ("Right", _wall(x=3.0), _GREEN),
+        ("Back", _wall(y=3.0), _GRAY),
+        ("Front", _wall(y=-3.0), BLUE),
+    ):
         path_cases.add_polygons(name, [wall], surface(color))
     cases.add_ball(surface(GOLD))
     scene = bpy.context.scene
     scene.camera.location, scene.camera.rotation_euler = (-0.7, -1.6, 1.3), (math.radians(75.0), 0.1, -0.2)
-    scene.render.resolution_x, scene.render.resolution_y = RESOLUTION
 
 
 def _lit_room(settings: dict[str, Any]) -> None:
     add_room(lambda color: shader("BsdfDiffuse", Color=color))
     where = ((0.4, 0.3, 2.9), (0.4, 0.3, 0.0))
     cases.add_lamp(cases.Lamp("AREA", 60.0, {"shape": "SQUARE", "size": 1.6}, where))
+    # Its edge against the ceiling would be most of what is compared.
+    bpy.data.objects["Lamp"].visible_camera = False
     see_all_around(settings)
 
 
