@@ -15,12 +15,8 @@ def camera_record(context: ExportContext) -> dict[str, Any]:
     engine = context.engine
     b_object = _camera(context)
     b_camera = b_object.data
-    _report_unsupported(b_object.name, b_camera, context)
     matrix, window = camera_view(context)
-    if b_camera.type == "PANO" and (window[0] > window[1] or window[2] > window[3]):
-        context.log.add(
-            b_object.name, "the least of its panorama is more than the most of it; the picture is mirrored"
-        )
+    _report_problems(b_object.name, b_camera, window, context)
     return {
         "name": b_object.name,
         "projection": _projection(b_camera, _frame_size(context)),
@@ -140,7 +136,10 @@ def render_region(
     return [min(x, resolution[0] - size[0]), min(y, resolution[1] - size[1]), *size]
 
 
-def _report_unsupported(name: str, b_camera: Any, context: ExportContext) -> None:
+def _report_problems(name: str, b_camera: Any, window: list[float], context: ExportContext) -> None:
     if b_camera.type not in ("PERSP", "ORTHO", "PANO"):
         kind = b_camera.bl_rna.properties["type"].enum_items[b_camera.type].name
         context.log.add(name, f"a {kind.lower()} camera is not supported yet; a perspective view is rendered")
+    left, right, bottom, top = window
+    if b_camera.type == "PANO" and (left > right or bottom > top):
+        context.log.add(name, "its panorama goes from a larger Min to a smaller Max; the picture is mirrored")

@@ -98,7 +98,8 @@ fn blades_and_ratio_shape_the_blur() {
     }
 }
 
-/// What lies in the plane of focus is as sharp as without lens.
+/// What lies in the plane of focus is as sharp as without lens. For a panorama that is a sphere, and the edges of the square
+/// beside it take a few samples.
 #[test]
 fn the_plane_of_focus_is_sharp() {
     for projection in [Projection::Perspective, Projection::Orthographic, Projection::Equirectangular] {
@@ -106,7 +107,7 @@ fn the_plane_of_focus_is_sharp() {
         let sharp = spot(projection, half_width, None).radiance();
         let focused = spot(projection, half_width, Some(lens(DEPTH))).radiance();
         for (sharp, focused) in sharp.into_iter().zip(focused) {
-            assert!((sharp - focused).abs() < 1e-3 * RADIANCE, "{focused} is not {sharp}");
+            assert!((sharp - focused).abs() < 4e-3 * RADIANCE, "{focused} is not {sharp}");
         }
     }
 }
