@@ -9,7 +9,7 @@ from tests.render import panorama_cases, pictures
 pytestmark = pytest.mark.slow
 
 SAMPLES = 64
-MEAN, BLOCKS = 0.01, 0.03
+MEAN, BLOCKS = 0.01, 0.04
 """Of the mean: what is granted between both engines in the whole, and as RMS in blocks of 4 pixels."""
 
 
@@ -39,6 +39,8 @@ def rms(a: pictures.Picture, b: pictures.Picture) -> float:
 def test_panorama_looks_as_in_cycles(name: str) -> None:
     if "cylindrical" in name and "central_cylindrical_radius" not in bpy.types.Camera.bl_rna.properties:
         pytest.skip("not in this Blender")
+    if name.startswith("window/fisheye") and bpy.app.version < (5, 0, 0):
+        pytest.skip("mirrored in Cycles of this Blender")
     ours, theirs = renders(panorama_cases.build(name))
     assert ours.mean() == pytest.approx(theirs.mean(), rel=MEAN)
     assert rms(ours, theirs) < BLOCKS
