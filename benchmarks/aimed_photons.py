@@ -91,7 +91,7 @@ def room(width: float) -> "rgp_core.Scene":
     builder.set_camera(
         {
             "name": "Camera",
-            "projection": "perspective",
+            "projection": {"kind": "perspective"},
             "world_from_camera": _looking_back(np.array([-0.8, -0.58, 0.12]), eye).tolist(),
             "window": [-0.7, 0.7, -0.52, 0.52],
             "resolution": [96, 72],

@@ -185,7 +185,7 @@ def _seen(builder: "rgp_core.SceneBuilder", eye: Point, target: Point, half: flo
     builder.set_camera(
         {
             "name": "Camera",
-            "projection": "perspective",
+            "projection": {"kind": "perspective"},
             "world_from_camera": matrix.tolist(),
             "window": [-half, half, -half, half],
             "resolution": [_EDGE, _EDGE],

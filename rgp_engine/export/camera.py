@@ -7,6 +7,7 @@ import numpy as np
 from ..report import UserError
 from .context import ExportContext
 from .coordinates import matrix_array
+from .panorama import panorama
 
 
 def camera_record(context: ExportContext) -> dict[str, Any]:
@@ -14,11 +15,11 @@ def camera_record(context: ExportContext) -> dict[str, Any]:
     engine = context.engine
     b_object = _camera(context)
     b_camera = b_object.data
-    _report_unsupported(b_object.name, b_camera, context)
     matrix, window = camera_view(context)
+    _report_problems(b_object.name, b_camera, window, context)
     return {
         "name": b_object.name,
-        "projection": "orthographic" if b_camera.type == "ORTHO" else "perspective",
+        "projection": _projection(b_camera, _frame_size(context)),
         "world_from_camera": matrix,
         "window": window,
         "resolution": [engine.resolution_x, engine.resolution_y],
@@ -39,13 +40,28 @@ def _camera(context: ExportContext) -> Any:
 
 def camera_view(context: ExportContext) -> tuple[list[list[float]], list[float]]:
     """Where the active camera is, and its window: `world_from_camera` and `window` of the core's CameraRecord."""
-    engine, b_render = context.engine, context.b_depsgraph.scene_eval.render
+    engine = context.engine
     b_object = _camera(context)
-    resolution = (engine.resolution_x, engine.resolution_y)
-    aspect = (b_render.pixel_aspect_x, b_render.pixel_aspect_y)
     shift = (engine.camera_shift_x(b_object), b_object.data.shift_y)
     matrix = matrix_array(engine.camera_model_matrix(b_object)).tolist()
-    return matrix, camera_window(b_object.data, resolution, aspect, shift)
+    return matrix, camera_window(b_object.data, _frame_size(context), shift)
+
+
+def _frame_size(context: ExportContext) -> tuple[float, float]:
+    """Width and height of the full frame, in square pixels."""
+    engine, b_render = context.engine, context.b_depsgraph.scene_eval.render
+    width, height = (
+        engine.resolution_x * b_render.pixel_aspect_x,
+        engine.resolution_y * b_render.pixel_aspect_y,
+    )
+    return width, height
+
+
+def _projection(b_camera: Any, size: tuple[float, float]) -> dict[str, Any]:
+    """The core's Projection."""
+    if b_camera.type == "PANO":
+        return panorama(b_camera, size).projection
+    return {"kind": "orthographic" if b_camera.type == "ORTHO" else "perspective"}
 
 
 def camera_lens(b_object: Any) -> dict[str, Any]:
@@ -76,17 +92,18 @@ def _focus_distance(b_object: Any) -> float:
     return float(abs(axis.dot(b_object.matrix_world.translation - place.translation)))
 
 
-def camera_window(
-    b_camera: Any,
-    resolution: tuple[int, int],
-    aspect: tuple[float, float],
-    shift: tuple[float, float],
-) -> list[float]:
-    """Left, right, bottom and top of the full frame at distance 1 (perspective) or in metres (orthographic).
+def camera_window(b_camera: Any, size: tuple[float, float], shift: tuple[float, float]) -> list[float]:
+    """Left, right, bottom and top of the full frame, at distance 1 (perspective), in metres (orthographic), or in the
+    unit of its panorama.
 
-    The sensor spans the longer side of the frame, or the side that sensor fit names; shifts are fractions of that side.
+    The sensor spans the longer side of the frame, or the side that sensor fit names; shifts are fractions of that side,
+    and of both sides of a panorama.
     """
-    width, height = resolution[0] * aspect[0], resolution[1] * aspect[1]
+    if b_camera.type == "PANO":
+        left, right, bottom, top = panorama(b_camera, size).window
+        shift_x, shift_y = shift[0] * (right - left), shift[1] * (top - bottom)
+        return [left + shift_x, right + shift_x, bottom + shift_y, top + shift_y]
+    width, height = size
     fit = b_camera.sensor_fit
     spans_width = width >= height if fit == "AUTO" else fit == "HORIZONTAL"
     if b_camera.type == "ORTHO":
@@ -119,7 +136,10 @@ def render_region(
     return [min(x, resolution[0] - size[0]), min(y, resolution[1] - size[1]), *size]
 
 
-def _report_unsupported(name: str, b_camera: Any, context: ExportContext) -> None:
-    if b_camera.type not in ("PERSP", "ORTHO"):
+def _report_problems(name: str, b_camera: Any, window: list[float], context: ExportContext) -> None:
+    if b_camera.type not in ("PERSP", "ORTHO", "PANO"):
         kind = b_camera.bl_rna.properties["type"].enum_items[b_camera.type].name
         context.log.add(name, f"a {kind.lower()} camera is not supported yet; a perspective view is rendered")
+    left, right, bottom, top = window
+    if b_camera.type == "PANO" and (left > right or bottom > top):
+        context.log.add(name, "its panorama goes from a larger Min to a smaller Max; the picture is mirrored")

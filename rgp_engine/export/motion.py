@@ -193,6 +193,9 @@ def _go_to(context: ExportContext, time: float) -> None:
 def _hand_over_camera(camera: dict[str, Any], steps: list[_Step]) -> None:
     middle = (camera["world_from_camera"], camera["window"])
     views = [step.camera for step in steps]
+    if camera["projection"]["kind"] not in ("perspective", "orthographic"):
+        # As in Cycles, changes of what a panorama shows are not blurred.
+        views = [(matrix, camera["window"]) for matrix, _ in views]
     if any(view != middle for view in views):
         camera["steps"] = [{"world_from_camera": matrix, "window": window} for matrix, window in views]
 

@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import accuracy, blender_panels, effects, light, material, problems, render, scene_parts
+from . import accuracy, blender_panels, camera, effects, light, material, problems, render, scene_parts
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
     (
@@ -11,6 +11,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         *problems.CLASSES,
         *effects.CLASSES,
         *light.CLASSES,
+        *camera.CLASSES,
         *material.CLASSES,
         *scene_parts.CLASSES,
     )

@@ -238,3 +238,27 @@ def test_wheel_missing_or_of_another_version(scene, monkeypatch, what):
     expected = "needs rgp_core .* but 9.9.9 is installed" if stand_in else "wheel rgp_core.* cannot be loaded"
     with pytest.raises(RuntimeError, match=expected):
         bpy.ops.render.render()
+
+
+@pytest.mark.parametrize("name", ["longitude", "latitude"])
+def test_panoramas_of_nothing(scene, name):
+    b_camera = build.add_camera().data
+    b_camera.type, b_camera.panorama_type = "PANO", "EQUIRECTANGULAR"
+    setattr(b_camera, f"{name}_min", 1.0)
+    setattr(b_camera, f"{name}_max", 1.0)
+    with pytest.raises(RuntimeError, match=f"camera '{scene.camera.name}': its field of view is empty"):
+        bpy.ops.render.render()
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 3e38, 0.0])
+def test_fisheyes_of_no_polynomial(scene, rendered, value):
+    """What Blender lets through is black, or a message with the camera's name."""
+    build.lit_room()
+    b_camera = scene.camera.data
+    b_camera.type, b_camera.panorama_type = "PANO", "FISHEYE_LENS_POLYNOMIAL"
+    for power in range(5):
+        setattr(b_camera, f"fisheye_polynomial_k{power}", value)
+    try:
+        assert np.isfinite(rendered()).all()
+    except RuntimeError as error:
+        assert f"camera '{scene.camera.name}': its lens polynomial is not a number" in str(error)  # noqa: PT017

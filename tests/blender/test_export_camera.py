@@ -17,7 +17,7 @@ POINTS = [Vector(p) for p in itertools.product((-1.5, 0.2, 1.7), (-1.1, 0.4, 2.0
 def frame_position(camera, point):
     """Where our record puts a world point: 0 to 1 over the full frame, as `world_to_camera_view` says it."""
     x, y, z, _ = np.linalg.inv(np.array(camera["world_from_camera"])) @ (*point, 1.0)
-    if camera["projection"] == "perspective":
+    if camera["projection"]["kind"] == "perspective":
         x, y = x / -z, y / -z
     left, right, bottom, top = camera["window"]
     return (x - left) / (right - left), (y - bottom) / (top - bottom)
@@ -106,11 +106,78 @@ def test_timeline_marker_chooses_the_camera(scene, export):
     assert export().camera["name"] == "Second"
 
 
-def test_panorama_falls_back_and_says_so(scene, export, problems):
+def panorama(b_camera, kind, **settings):
+    b_camera.type, b_camera.panorama_type = "PANO", kind
+    for name, value in settings.items():
+        setattr(b_camera, name, value)
+
+
+def test_angles_of_panoramas_are_the_window(scene, export, problems):
     b_camera = build.add_camera().data
-    b_camera.type = "PANO"
-    assert export().camera["projection"] == "perspective"
-    assert any("panoramic camera is not supported yet" in text for text in problems())
+    scene.render.resolution_x, scene.render.resolution_y = 40, 20
+    window = {"longitude_min": -1.0, "longitude_max": 2.0, "latitude_min": -0.5, "latitude_max": 1.0}
+    panorama(b_camera, "EQUIRECTANGULAR", **window)
+    camera = export().camera
+    assert camera["projection"] == {"kind": "equirectangular"}
+    assert camera["window"] == pytest.approx([-1.0, 2.0, -0.5, 1.0])
+    b_camera.shift_x, b_camera.shift_y = 0.1, -0.2
+    assert export().camera["window"] == pytest.approx([-0.7, 2.3, -0.8, 0.7])
+    b_camera.shift_x = b_camera.shift_y = 0.0
+    panorama(b_camera, "EQUIANGULAR_CUBEMAP_FACE")
+    camera = export().camera
+    assert camera["projection"] == {"kind": "cubemap_face"}
+    assert camera["window"] == pytest.approx([-math.pi / 4, math.pi / 4, -math.pi / 4, math.pi / 4])
+    assert not any("camera" in text.lower() for text in problems())
+
+
+def test_cylinders_have_a_radius(scene, export):
+    b_camera = build.add_camera().data
+    if not hasattr(b_camera, "central_cylindrical_radius"):
+        pytest.skip("not in this Blender")
+    panorama(b_camera, "CENTRAL_CYLINDRICAL", central_cylindrical_radius=2.0)
+    b_camera.central_cylindrical_range_u_min, b_camera.central_cylindrical_range_v_max = -2.0, 3.0
+    camera = export().camera
+    assert camera["projection"] == {"kind": "cylindrical"}
+    assert camera["window"] == pytest.approx([-2.0, math.pi, -0.5, 1.5])
+
+
+@pytest.mark.parametrize(
+    ("fit", "width", "height"), [("AUTO", 30.0, 15.0), ("HORIZONTAL", 30.0, 15.0), ("VERTICAL", 40.0, 20.0)]
+)
+def test_fisheyes_have_a_lens_or_none(scene, export, fit, width, height):
+    b_camera = build.add_camera().data
+    scene.render.resolution_x, scene.render.resolution_y = 40, 20
+    b_camera.sensor_fit, b_camera.sensor_width, b_camera.sensor_height = fit, 30.0, 20.0
+    panorama(b_camera, "FISHEYE_EQUISOLID", fisheye_lens=10.0, fisheye_fov=3.0)
+    camera = export().camera
+    assert camera["projection"] == {"kind": "fisheye_equisolid", "field_of_view": 3.0}
+    half_width, half_height = width / 2.0, height / 2.0
+    frame = np.array([-half_width, half_width, -half_height, half_height])
+    assert camera["window"] == pytest.approx(frame / 10.0)
+    polynomial = {f"fisheye_polynomial_k{power}": -(0.5**power) for power in range(5)}
+    panorama(b_camera, "FISHEYE_LENS_POLYNOMIAL", **polynomial)
+    camera = export().camera
+    assert camera["projection"]["coefficients"] == [1.0, 0.5, 0.25, 0.125, 0.0625]
+    assert camera["window"] == pytest.approx(frame)
+    panorama(b_camera, "FISHEYE_EQUIDISTANT")
+    camera = export().camera
+    assert camera["projection"] == {"kind": "fisheye_equidistant", "field_of_view": 3.0}
+    assert camera["window"] == pytest.approx([-1.5, 1.5, -1.5, 1.5])
+    panorama(b_camera, "MIRRORBALL")
+    camera = export().camera
+    assert camera["projection"] == {
+        "kind": "fisheye_equisolid",
+        "field_of_view": pytest.approx(2.0 * math.pi),
+    }
+    assert camera["window"] == [-2.0, 2.0, -2.0, 2.0]
+
+
+def test_mirrored_panoramas_are_reported(scene, export, problems):
+    b_camera = build.add_camera().data
+    b_camera.name = "All Around"
+    panorama(b_camera, "EQUIRECTANGULAR", longitude_min=1.0, longitude_max=-1.0)
+    assert export().camera["window"][:2] == [1.0, -1.0]
+    assert any("the picture is mirrored" in text for text in problems())
 
 
 def test_lens(scene, export):

@@ -152,7 +152,8 @@ def test_one_problem_is_told_in_full_and_several_are_counted():
 
 
 def test_problems_end_in_one_warning(scene, recorded, calls):
-    build.add_camera().data.type = "PANO"
+    b_camera = build.add_camera().data
+    b_camera.type, b_camera.panorama_type, b_camera.longitude_min = "PANO", "EQUIRECTANGULAR", 4.0
     bpy.ops.render.render()
     ((args, _),) = of(calls, "report")
     assert args[0] == {"WARNING"}

@@ -8,10 +8,10 @@ import pytest
 from rgp_engine import report, ui
 from rgp_engine.accuracy import background
 from rgp_engine.report import Outcome, Problem
-from rgp_engine.ui import accuracy, effects, light, material, problems, render, scene_parts
+from rgp_engine.ui import accuracy, camera, effects, light, material, problems, render, scene_parts
 from tests.blender import build
 
-MODULES = (accuracy, effects, light, material, problems, render, scene_parts)
+MODULES = (accuracy, camera, effects, light, material, problems, render, scene_parts)
 
 
 class Layout:
@@ -19,10 +19,15 @@ class Layout:
 
     def __init__(self):
         self.texts = []
+        self.names = set()
 
     def prop(self, b_data, name, text=None, **_):
         assert name in b_data.bl_rna.properties, f"{b_data} has no {name}"
+        self.names.add(name)
         self.texts.append(text if text is not None else b_data.bl_rna.properties[name].name)
+
+    def separator(self):
+        pass
 
     def label(self, text="", **_):
         self.texts.append(text)
@@ -205,7 +210,7 @@ def test_error_of_the_last_render(scene, monkeypatch):
 
 
 def test_panels_are_hidden_for_other_engines(scene):
-    things = dict.fromkeys(("active_object", "object", "light", "material", "world"), None)
+    things = dict.fromkeys(("active_object", "object", "camera", "light", "material", "world"), None)
     for cls in (cls for module in MODULES for cls in module.CLASSES if issubclass(cls, bpy.types.Panel)):
         assert not cls.poll(SimpleNamespace(engine="CYCLES", **things))
 
@@ -214,3 +219,20 @@ def test_every_panel_is_registered():
     classes = [cls for module in MODULES for cls in module.CLASSES]
     assert all(cls.is_registered for cls in classes)
     assert ui.register is not None
+
+
+def test_every_panorama_has_its_settings(scene):
+    """Those of Blender's own panel, which it draws for Cycles alone."""
+    b_camera = build.add_camera().data
+    assert draw(camera.RGP_PT_panorama, camera=b_camera) is None
+    assert draw(camera.RGP_PT_panorama, camera=None) is None
+    b_camera.type = "PANO"
+    for b_item in b_camera.bl_rna.properties["panorama_type"].enum_items:
+        b_camera.panorama_type = b_item.identifier
+        names = []
+        for b_panel, engine in ((camera.RGP_PT_panorama, "RGP"), (bpy.types.DATA_PT_lens, "CYCLES")):
+            layout = Layout()
+            context = SimpleNamespace(engine=engine, camera=b_camera)
+            b_panel.draw(SimpleNamespace(layout=layout), context)
+            names.append(layout.names - {"type", "shift_x", "shift_y", "clip_start", "clip_end"})
+        assert names[0] == names[1]

@@ -30,7 +30,7 @@ LUMINAIRES = [
 ]
 CAMERA = {
     "name": "Camera",
-    "projection": "perspective",
+    "projection": {"kind": "perspective"},
     "world_from_camera": [[float(row == column) for column in range(4)] for row in range(4)],
     "window": [-1.0, 1.0, -1.0, 1.0],
     "resolution": [4, 4],

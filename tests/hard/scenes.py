@@ -198,7 +198,7 @@ class Scene:
         self.builder.set_camera(
             {
                 "name": "Camera",
-                "projection": "orthographic" if orthographic else "perspective",
+                "projection": {"kind": "orthographic" if orthographic else "perspective"},
                 "world_from_camera": looking(eye, target, up).tolist(),
                 "window": [-half, half, -tall, tall],
                 "resolution": [width, height],

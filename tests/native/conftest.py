@@ -48,7 +48,7 @@ class Room:
         above[2, 3] = 5.0
         self.camera: dict[str, Any] = {
             "name": "Camera",
-            "projection": "perspective",
+            "projection": {"kind": "perspective"},
             "world_from_camera": above.tolist(),
             "window": [-0.3, 0.3, -0.2, 0.2],
             "resolution": [30, 20],

@@ -1,10 +1,9 @@
 //! The fields of every record. A field or name that the renderer does not know ends the first run with a message.
 
-use rgp_renderer::scene::Projection;
 use rgp_renderer::scene::record::Input;
 use rgp_renderer::shader::{
     BlendMode, CellHash, Extension, Feature, Fractal, GradientShape, Interpolation, MathFunction, Metric,
-    NormalSpace, Projection as PanoramaProjection, Quantity, VectorFunction, VoronoiOutput, WaveDirection,
+    NormalSpace, Projection, Quantity, VectorFunction, VoronoiOutput, WaveDirection,
     WaveProfile,
 };
 
@@ -76,7 +75,7 @@ pub const INSTRUCTIONS: &[(&str, Fields)] = &[
     ("normalize", &[("vector", Register)]),
     ("image", IMAGE),
     ("tiled_image", &[("tiles", List(3, TILE)), ("vector", Register), EXTENSION, INTERPOLATION, UNASSOCIATE]),
-    ("panorama", &[("vector", Register), ("projection", Word(words::<PanoramaProjection>))]),
+    ("panorama", &[("vector", Register), ("projection", Word(words::<Projection>))]),
     (
         "sun_disk",
         &[
@@ -241,10 +240,23 @@ const LENS: Fields =
 
 const CAMERA_STEP: Fields = &[("world_from_camera", Matrix), ("window", Numbers(4))];
 
+const FIELD_OF_VIEW: (&str, Kind) = ("field_of_view", Number);
+
+const PROJECTIONS: &[(&str, Fields)] = &[
+    ("perspective", &[]),
+    ("orthographic", &[]),
+    ("equirectangular", &[]),
+    ("cubemap_face", &[]),
+    ("cylindrical", &[]),
+    ("fisheye_equidistant", &[FIELD_OF_VIEW]),
+    ("fisheye_equisolid", &[FIELD_OF_VIEW]),
+    ("fisheye_polynomial", &[FIELD_OF_VIEW, ("coefficients", Numbers(5))]),
+];
+
 /// A camera.
 pub const CAMERA: Fields = &[
     ("name", Name),
-    ("projection", Word(words::<Projection>)),
+    ("projection", One("kind", PROJECTIONS)),
     ("world_from_camera", Matrix),
     ("window", Numbers(4)),
     ("clip", Numbers(2)),

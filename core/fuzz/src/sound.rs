@@ -22,6 +22,12 @@ pub fn assert_sound(scene: &Scene) {
         assert!((0.0..=1.0).contains(&time), "the shutter is open at {time}");
         let (place, window) = camera.at(time);
         assert!(place.is_finite() && window.iter().all(|v| v.is_finite()), "{camera:?}");
+        let [left, right, bottom, top] = window;
+        for at in [[left, bottom], [right, top], [0.5 * (left + right), 0.5 * (bottom + top)]] {
+            let Some(sight) = camera.projection.sight(at.into()) else { continue };
+            assert!(sight.direction.is_finite() && sight.direction != glam::DVec3::ZERO, "{camera:?}: {sight:?}");
+            assert!(!sight.spread.is_nan(), "{camera:?}: {sight:?}");
+        }
     }
     if let Some(lens) = &camera.lens {
         assert!(lens.point([0.3, 0.9]).is_finite() && lens.focus_distance() > 0.0, "{lens:?}");

@@ -1,9 +1,12 @@
 //! The lens against closed forms: the image of a small bright square at depth z, with the plane of focus at depth f, is
-//! the aperture scaled by 1/f − 1/z on the plane at distance 1, or by 1 − z/f where rays are parallel.
+//! the aperture scaled by 1/f − 1/z on the plane at distance 1, or by 1 − z/f where rays are parallel. Small parts of a
+//! panorama are as that plane, wherever it looks.
 
 mod support;
 
-use glam::{DVec2, DVec3, Vec3};
+use std::f64::consts::FRAC_PI_2;
+
+use glam::{DMat4, DVec2, DVec3, Vec3};
 use rgp_renderer::scene::record::{CameraRecord, LensRecord};
 use rgp_renderer::scene::{Projection, SceneBuilder};
 use rgp_renderer::settings::{RenderSettings, Switch};
@@ -25,7 +28,12 @@ fn spot(projection: Projection, half_width: f64, lens: Option<LensRecord>) -> Pi
     place(&mut builder, floor(HALF as f32, -DEPTH as f32), &[emitter(0.0, RADIANCE as f32)]);
     // Far off, so that scene space is not the square's own.
     place(&mut builder, floor(0.5, 3.0), &[diffuse(0.5)]);
-    let record = camera(DVec3::ZERO, -DVec3::Z, half_width, PIXELS);
+    let mut record = camera(DVec3::ZERO, -DVec3::Z, half_width, PIXELS);
+    if projection == Projection::Equirectangular {
+        // The square is not ahead, but to the right.
+        record.world_from_camera = rows(DMat4::from_rotation_y(FRAC_PI_2));
+        record.window = [FRAC_PI_2 - half_width, FRAC_PI_2 + half_width, -half_width, half_width];
+    }
     builder.set_camera(CameraRecord { projection, lens, ..record });
     finish_and_render(builder, &sharp_settings())
 }
@@ -54,8 +62,8 @@ fn moments(picture: &Picture, half_width: f64) -> (f64, DVec2) {
 fn check(projection: Projection, lens: LensRecord, expected: DVec2) {
     let (focus, blades) = (lens.focus_distance, lens.blades);
     let (scale, size) = match projection {
-        Projection::Perspective => ((1.0 / focus - 1.0 / DEPTH).abs(), HALF / DEPTH),
         Projection::Orthographic => ((1.0 - DEPTH / focus).abs(), HALF),
+        _ => ((1.0 / focus - 1.0 / DEPTH).abs(), HALF / DEPTH),
     };
     let half_width = 1.6 * RADIUS / lens.ratio.min(1.0) * scale + 2.0 * size;
     let picture = spot(projection, half_width, Some(lens));
@@ -71,7 +79,7 @@ fn check(projection: Projection, lens: LensRecord, expected: DVec2) {
 #[test]
 fn the_circle_of_confusion_is_that_of_a_thin_lens() {
     for focus in [2.0, 7.0] {
-        for projection in [Projection::Perspective, Projection::Orthographic] {
+        for projection in [Projection::Perspective, Projection::Orthographic, Projection::Equirectangular] {
             check(projection, lens(focus), DVec2::splat(0.25));
         }
     }
@@ -85,18 +93,21 @@ fn blades_and_ratio_shape_the_blur() {
         check(Projection::Perspective, lens, polygon(blades.into()));
     }
     let wide = LensRecord { ratio: 0.5, ..lens(2.0) };
-    check(Projection::Perspective, wide, DVec2::new(1.0, 0.25));
+    for projection in [Projection::Perspective, Projection::Equirectangular] {
+        check(projection, wide.clone(), DVec2::new(1.0, 0.25));
+    }
 }
 
-/// What lies in the plane of focus is as sharp as without lens.
+/// What lies in the plane of focus is as sharp as without lens. For a panorama that is a sphere, and the edges of the square
+/// beside it take a few samples.
 #[test]
 fn the_plane_of_focus_is_sharp() {
-    for projection in [Projection::Perspective, Projection::Orthographic] {
-        let half_width = if projection == Projection::Perspective { 2.0 * HALF / DEPTH } else { 2.0 * HALF };
+    for projection in [Projection::Perspective, Projection::Orthographic, Projection::Equirectangular] {
+        let half_width = 2.0 * HALF / if projection == Projection::Orthographic { 1.0 } else { DEPTH };
         let sharp = spot(projection, half_width, None).radiance();
         let focused = spot(projection, half_width, Some(lens(DEPTH))).radiance();
         for (sharp, focused) in sharp.into_iter().zip(focused) {
-            assert!((sharp - focused).abs() < 1e-3 * RADIANCE, "{focused} is not {sharp}");
+            assert!((sharp - focused).abs() < 4e-3 * RADIANCE, "{focused} is not {sharp}");
         }
     }
 }

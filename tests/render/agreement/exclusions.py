@@ -30,7 +30,7 @@ NOT_RENDERED: dict[str, str] = {
     "lamp/spot of scale 0": "its cone has no width in either engine; left out, with a warning",
     "node/Image Texture, movies, and UDIM tiles in projections other than flat": _TYPICAL,
     "node/Mapping of type Texture, inputs that vary": _TYPICAL,
-    "node/Texture Coordinate, Window of cameras that see all around": _TYPICAL,
+    "node/Texture Coordinate, Window of a fisheye with a lens polynomial": _TYPICAL,
     "node/Geometry, Pointiness": _TYPICAL,
     "node/Light Path, lengths (but for Ray Length of lamps) and depths": _TYPICAL,
     "node/Gabor Texture": _TYPICAL,

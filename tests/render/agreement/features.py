@@ -16,6 +16,7 @@ from tests.render import (
     motion_cases,
     node_cases,
     node_scene,
+    panorama_cases,
     path_cases,
     world_cases,
 )
@@ -48,4 +49,9 @@ def features() -> list[Feature]:
         ),
         *(Feature(f"linking/{name}", partial(linking_cases.build, name)) for name in linking_cases.LINKINGS),
         *(Feature(f"catcher/{name}", partial(catcher_cases.build, name)) for name in catcher_cases.CATCHERS),
+        *(
+            # Filters reach beyond the frame, where a place in the picture may start anew.
+            Feature(f"panorama/{name}", partial(panorama_cases.build, name), "window" in name)
+            for name in panorama_cases.PANORAMAS
+        ),
     ]

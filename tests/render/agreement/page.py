@@ -24,6 +24,7 @@ TITLES = {
     "node": "Nodes",
     "linking": "Light linking and shadow linking",
     "catcher": "Shadow catchers",
+    "panorama": "Cameras that see all around",
 }
 """By group."""
 

@@ -16,7 +16,6 @@ use crate::sampling::{PixelSeeds, Rng, hash, shuffled_point, shuffled_points};
 use crate::scene::{MIDDLE, visibility};
 use crate::settings::GatherSampling;
 
-use super::Gatherer;
 use super::camera::{CameraRay, camera_ray};
 use super::catcher::Caught;
 use super::deferred::Traces;
@@ -24,6 +23,7 @@ use super::direct::{ShadowRay, lambert_shadow_ray, shadow_ray, transmittance};
 use super::lambert::LambertLanes;
 use super::path::Sampled;
 use super::vertex::{GatherRay, Vertex, rotate};
+use super::{Gatherer, Width};
 
 /// Tells a pixel's points on lamps from its points in the pixel.
 const LAMP_SEED: u32 = 0x9E37_79B1;
@@ -44,8 +44,8 @@ pub(super) struct Block<'a, 'g, E: Estimator> {
     pub(super) caught: [Option<Caught>; LANES],
     pub(super) samples: [PixelSample; LANES],
     pub(super) packet: Packet,
-    /// How far from the lens each camera ray starts.
-    start: [f32; LANES],
+    /// How wide each camera ray is from where it starts.
+    width: [Width; LANES],
     /// See [`CameraRay`].
     moved: [f32; LANES],
     /// What each camera ray starts in.
@@ -69,7 +69,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             caught: [None; LANES],
             samples: [PixelSample::default(); LANES],
             packet: Packet::default(),
-            start: [0.0; LANES],
+            width: [Width::NONE; LANES],
             moved: [0.0; LANES],
             medium: [Medium::CLEAR; LANES],
             others: [None; LANES],
@@ -138,7 +138,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             let offset = DVec2::new(f64::from(offset[0]), f64::from(offset[1]));
             let position = DVec2::new(f64::from(frame_x), f64::from(frame_y)) + 0.5 + offset;
             let time = if g.lit.plan.motion_blur { self.time(lane) } else { MIDDLE };
-            let CameraRay { ray, reach, start, moved } = match &g.lens {
+            let seen = match &g.lens {
                 None => camera_ray(camera, g.lit, position, None, time),
                 Some(lens) => {
                     let owner = self.traces.meter.enter(Effect::DepthOfField);
@@ -147,7 +147,12 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
                     camera_ray(camera, g.lit, position, Some((lens, point)), time)
                 }
             };
-            (self.start[lane], self.moved[lane]) = (start, moved);
+            let Some(CameraRay { ray, reach, start, moved, spread }) = seen else {
+                // Beside a fisheye's picture it is black, even where the film is transparent, as in Cycles.
+                self.samples[lane].alpha = 1.0;
+                continue;
+            };
+            (self.width[lane], self.moved[lane]) = (g.camera_width.spread_by(spread).after(start), moved);
             self.medium[lane] = g.lit.medium_at(ray.origin, time, &mut self.traces.meter);
             self.packet.set(lane, &ray, reach);
         }
@@ -184,12 +189,10 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
         }
         let albedo = match g.plain[material] {
             Some(albedo_over_pi) => albedo_over_pi * PI,
-            None => {
-                match g.lit.varying_albedo(material, ray, &hit, g.camera_width.at(self.start[lane] + hit.t)) {
-                    Some(albedo) => albedo,
-                    None => return false,
-                }
-            }
+            None => match g.lit.varying_albedo(material, ray, &hit, self.width[lane].at(hit.t)) {
+                Some(albedo) => albedo,
+                None => return false,
+            },
         };
         let frame = g.lit.frame(ray, &hit, ng);
         let p = ray.origin + ray.direction * hit.t;
@@ -205,7 +208,7 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
     fn follow_camera(&mut self, lane: usize, mut ray: Ray, hit: Option<Hit>) {
         let g = self.gatherer;
         let mut rng = Rng::new(hash(self.keys[lane], u64::from(self.sample) << 16 | 1));
-        let mut sampled = Sampled::by_camera(g.camera_width.after(self.start[lane]));
+        let mut sampled = Sampled::by_camera(self.width[lane]);
         (sampled.moved, sampled.medium) = (self.moved[lane], self.medium[lane]);
         let owner = self.traces.meter.owner();
         let (mut first, mut throughput) = (Some(hit), Rgb::WHITE);

@@ -208,8 +208,8 @@ impl Disagreement<'_> {
         let pixel = |i: u32| {
             let at = glam::DVec2::new(f64::from(left + i % width), f64::from(bottom + i / width)) + 0.5;
             let mut rng = Rng::new(hash(hash(u64::from(seed), 0x61_75_64_69_74), u64::from(i)));
-            let seen =
-                first_scatterer(lit, camera_ray(camera, lit, at, None, MIDDLE).ray, MAX_DEPTH, &mut rng)?;
+            let ray = camera_ray(camera, lit, at, None, MIDDLE)?.ray;
+            let seen = first_scatterer(lit, ray, MAX_DEPTH, &mut rng)?;
             let class = self.pyramid.class(seen.bsdf.frame.side()) as u32;
             let place = Place { p: seen.p, class, level: finest };
             self.pyramid.cells_around(place).find_map(|id| excess.get(&id).copied())

@@ -98,7 +98,7 @@ pub struct Gatherer<'a, E> {
     varying_lambert_read: Vec<bool>,
     /// Whether there is one.
     has_varying: bool,
-    /// Of rays from the camera.
+    /// Of rays from the camera, where each unit of the window is one of angle or length.
     camera_width: Width,
     /// Checks look-ups.
     auditor: Option<&'a Auditor<'a>>,
@@ -129,6 +129,11 @@ impl Width {
 
     fn at(self, distance: f32) -> f32 {
         self.start + self.spread * distance + (self.blur + self.blur_spread * distance).abs()
+    }
+
+    /// That of a ray that spreads so much more.
+    fn spread_by(self, factor: f32) -> Self {
+        Self { spread: self.spread * factor, ..self }
     }
 
     /// That of the ray that goes on after a distance.

@@ -29,9 +29,10 @@ pub fn finds(lit: &LitScene<'_>, seed: u32) -> Vec<Find> {
     let of_pixel = |i: u32| {
         let mut rng = Rng::new(hash(hash(u64::from(seed), 0x61_69_6d), u64::from(i)));
         let at = DVec2::new(f64::from(i % EDGE), f64::from(i / EDGE)) + 0.5;
-        let ray = camera_ray(camera, lit, at / f64::from(EDGE) * frame, None, MIDDLE).ray;
         let mut finds = Vec::new();
-        if let Some(surface) = first_scatterer(lit, ray, MAX_DEPTH, &mut rng) {
+        if let Some(seen) = camera_ray(camera, lit, at / f64::from(EDGE) * frame, None, MIDDLE)
+            && let Some(surface) = first_scatterer(lit, seen.ray, MAX_DEPTH, &mut rng)
+        {
             for _ in 0..GATHER_RAYS {
                 walk(lit, &surface, &mut rng, &mut finds);
             }

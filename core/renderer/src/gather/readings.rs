@@ -25,9 +25,10 @@ pub fn readings(lit: &LitScene<'_>, rays: u32, seed: u32) -> Vec<Reading> {
         // The whole frame, so that a border crops the picture and changes nothing in it.
         let at = DVec2::new(f64::from(i % EDGE), f64::from(i / EDGE)) + 0.5;
         let position = at / f64::from(EDGE) * frame;
-        let ray = camera_ray(camera, lit, position, None, MIDDLE).ray;
         let mut readings = Vec::new();
-        if let Some(surface) = first_scatterer(lit, ray, MAX_DEPTH, &mut rng) {
+        if let Some(seen) = camera_ray(camera, lit, position, None, MIDDLE)
+            && let Some(surface) = first_scatterer(lit, seen.ray, MAX_DEPTH, &mut rng)
+        {
             readings.push(Reading { p: surface.p, cell_size: f32::INFINITY });
             for _ in 0..GATHER_RAYS {
                 let sample =

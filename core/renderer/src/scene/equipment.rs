@@ -11,9 +11,10 @@ use crate::error::RenderError;
 pub(super) fn place_camera(record: &CameraRecord, space: &SceneSpace) -> Result<Camera, RenderError> {
     let fault = |what: &str| RenderError::Scene(format!("camera '{}': {what}", record.name));
     let length = match record.projection {
-        Projection::Perspective => 1.0,
         Projection::Orthographic => space.scale,
+        _ => 1.0,
     };
+    record.projection.check().map_err(fault)?;
     let place = |world_from_camera, window| camera_view(world_from_camera, window, length, space);
     let (scene_from_camera, window) = place(&record.world_from_camera, &record.window).map_err(fault)?;
     if !is_step_count(record.steps.len()) {

@@ -12,6 +12,7 @@ mod lens;
 mod links;
 mod mesh;
 mod motion;
+mod projection;
 pub mod record;
 
 use std::sync::Arc;
@@ -25,7 +26,8 @@ pub use lens::Lens;
 pub use links::{LightLinks, ObjectLinks};
 pub use mesh::MeshArrays;
 pub use motion::{MIDDLE, Shutter};
-pub use record::{LampShape, ObjectInfo, Projection, visibility};
+pub use projection::{Projection, Sight};
+pub use record::{LampShape, ObjectInfo, visibility};
 
 use crate::color::Rgb;
 use crate::shader::{Program, Register, Texture};
@@ -232,13 +234,13 @@ pub struct Camera {
     pub projection: Projection,
     /// Camera to scene, without scale.
     pub scene_from_camera: DAffine3,
-    /// Left, right, bottom, top of the full frame at distance 1 (perspective) or in scene units (orthographic).
+    /// Left, right, bottom, top of the full frame, in the unit of its projection; lengths in scene units.
     pub window: [f64; 4],
     /// Pixels of the full frame.
     pub resolution: [u32; 2],
     /// Rendered part: x, y (from the bottom left), width, height.
     pub region: [u32; 4],
-    /// Near and far clip distance along the view axis, in scene units.
+    /// Near and far clip distance along the view axis, or along each ray of a panorama, in scene units.
     pub clip: [f32; 2],
     /// Its lens; `None` for a pinhole.
     pub lens: Option<Lens>,

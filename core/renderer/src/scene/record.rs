@@ -10,6 +10,7 @@ use crate::shader::{Instruction, Register};
 pub use super::lamp::{LampProgramRecord, LampRecord, LampShape};
 pub use super::lens::LensRecord;
 pub use super::links::{LightLinks, ObjectLinks};
+pub use super::projection::Projection;
 
 /// Ray kinds an object can be hidden from; the bits are Embree's ray mask.
 pub mod visibility {
@@ -344,16 +345,6 @@ impl Default for ObjectInfo {
     }
 }
 
-/// How the image plane is projected.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Projection {
-    /// Rays leave one point.
-    Perspective,
-    /// Rays are parallel.
-    Orthographic,
-}
-
 /// A camera.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -364,13 +355,13 @@ pub struct CameraRecord {
     pub projection: Projection,
     /// Camera to world, looking along −Z; scale is ignored.
     pub world_from_camera: [[f64; 4]; 4],
-    /// Left, right, bottom, top of the full frame, on the plane at distance 1 (perspective) or in metres (orthographic).
+    /// Left, right, bottom, top of the full frame, in the unit of its projection.
     pub window: [f64; 4],
     /// Pixels of the full frame, width and height.
     pub resolution: [u32; 2],
     /// Part of the frame that is rendered: x, y (from the bottom left), width, height.
     pub region: [u32; 4],
-    /// Near and far clip distance along the view axis (m).
+    /// Near and far clip distance along the view axis, or along each ray of a panorama (m).
     pub clip: [f64; 2],
     /// Its lens; without one it is a pinhole.
     #[serde(default)]
