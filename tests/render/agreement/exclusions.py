@@ -22,7 +22,6 @@ NOT_RENDERED: dict[str, str] = {
     "shader/volumes": _LEFT_OUT,
     "shader/Principled BSDF, Anisotropic": _LEFT_OUT,
     "shader/Principled BSDF, Thin Film": _LEFT_OUT,
-    "shader/Principled BSDF, Diffuse Roughness": _LEFT_OUT,
     "shader/Metallic BSDF, Physical Conductor": "not supported yet; F82 is used instead, with a warning",
     "lamp_node/light that nodes make negative": "counts as none; Cycles takes it away from other light",
     "lamp/spot of scale 0": "its cone has no width in either engine; left out, with a warning",

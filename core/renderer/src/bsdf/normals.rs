@@ -175,7 +175,7 @@ impl Bsdf<'_> {
         let normals = self.material.normals();
         let own = || normals.frame(lobe.normal, self.wo, &self.frame);
         match lobe.shape {
-            Shape::Lambert | Shape::Translucent => {
+            Shape::Lambert | Shape::OrenNayar(_) | Shape::Translucent => {
                 let outward = normals.vector(lobe.normal);
                 let ns = if self.frame.entering { outward } else { -outward };
                 ShadingFrame { ns, ..self.frame }
