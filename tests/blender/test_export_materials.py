@@ -6,7 +6,6 @@ import pytest
 
 from tests.blender import build
 
-
 HAS_DIFFUSE_ROUGHNESS = bpy.app.version >= (4, 3)
 
 
@@ -202,7 +201,9 @@ def test_reroutes_muted_nodes_and_groups(scene, closures, problems):
     b_tree.links.new(b_gamma.outputs[0], b_nodes.inputs[0])
     b_tree.links.new(b_nodes.outputs[0], b_reroute.inputs[0])
     b_tree.links.new(b_reroute.outputs[0], b_output.inputs["Surface"])
-    assert only(closures(b_material)) == approx({"kind": "diffuse", "color": [0.3, 0.6, 0.9], "roughness": 0.0})
+    assert only(closures(b_material)) == approx(
+        {"kind": "diffuse", "color": [0.3, 0.6, 0.9], "roughness": 0.0}
+    )
     assert not any("Material" in text for text in problems())
 
 

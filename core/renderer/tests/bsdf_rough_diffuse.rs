@@ -4,7 +4,9 @@ mod bsdf_support;
 
 use std::f64::consts::{PI, TAU};
 
-use bsdf_support::{RADIANCE, Rng, at, diffuse, mixed, prepared, principled, rough_diffuse, seen};
+use bsdf_support::{
+    IMPORTANCE, RADIANCE, Rng, at, diffuse, mixed, prepared, principled, rough_diffuse, sampled_albedo, seen,
+};
 use glam::{DVec3, Vec3};
 use rgp_renderer::bsdf::LobeSet;
 use rgp_renderer::color::Rgb;
@@ -80,6 +82,20 @@ fn no_roughness_is_lamberts_lobe_to_the_bit() {
         let [a, b, c] = [&smooth, &nearly, &rough].map(|m| value(m).eval(wi, LobeSet::DIFFUSE, RADIANCE));
         assert_eq!(a, b);
         assert!(a.is_black() || a != c);
+    }
+}
+
+#[test]
+fn stored_photons_leave_as_much_flux_as_scattered_ones() {
+    for closure in [rough_diffuse(0.3, 1.0), rough_diffuse(0.9, 0.4)] {
+        let material = prepared(closure);
+        for cos in [1.0, 0.5, 0.1] {
+            let photon = seen(&material, cos, true);
+            let read = seen(&material, 0.7, true).diffuse_albedo() * photon.lambert_factor();
+            let scattered = sampled_albedo(&photon, LobeSet::ALL, IMPORTANCE, 48);
+            let off = f64::from(read.mean()) / scattered - 1.0;
+            assert!(off.abs() < 2e-3, "cosine {cos}: {read:?} for {scattered}");
+        }
     }
 }
 

@@ -127,6 +127,15 @@ impl Lobe {
         Self { shape: Shape::Sheen(sheen), ..Self::lambert(color * albedo, slot) }
     }
 
+    /// What irradiance over π is multiplied with where only that is known. Facets return more of light at a slant: photons
+    /// bring that along, see [`super::Bsdf::lambert_factor`], and what leaves is taken to do so evenly.
+    pub(super) fn read_albedo(&self) -> Rgb {
+        match self.shape {
+            Shape::OrenNayar(facets) => self.weight * facets.mean_albedo(self.gain),
+            _ => self.albedo,
+        }
+    }
+
     /// True for lobes on the side away from the viewer.
     pub(super) fn is_transmission(&self) -> bool {
         matches!(self.shape, Shape::Transmission { .. } | Shape::Translucent)

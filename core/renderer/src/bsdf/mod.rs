@@ -299,7 +299,7 @@ impl Bsdf<'_> {
     /// diffuse lobes.
     #[must_use]
     pub fn diffuse_albedo(&self) -> Rgb {
-        self.albedo(LobeSet::DIFFUSE)
+        self.lobes(LobeSet::DIFFUSE).map(Lobe::read_albedo).sum()
     }
 
     /// The BSDF (sr⁻¹) of the lobes of `set` for `wi`, without the cosine; delta lobes give nothing.

@@ -64,6 +64,12 @@ impl Facets {
         (single + bounced * (self.lost(cos_o) * self.lost(cos_i))) * FRAC_1_PI
     }
 
+    /// Mean by cosine of [`Facets::albedo`].
+    pub(super) fn mean_albedo(self, bounced: Rgb) -> Rgb {
+        let lost = self.mean_lost();
+        Rgb::splat(1.0 - lost) + bounced * (lost * lost)
+    }
+
     /// The albedo over ρ, for a viewer at `cos`.
     pub(super) fn albedo(self, bounced: Rgb, cos: f32) -> Rgb {
         let lost = self.lost(cos);
