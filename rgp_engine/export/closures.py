@@ -37,7 +37,6 @@ _PRINCIPLED = (
 _LEFT_OUT = (
     "Anisotropic",
     "Anisotropy",
-    "Diffuse Roughness",
     "Thin Film Thickness",
     "Thin Wall",
 )
@@ -119,9 +118,8 @@ def _report_left_out(folder: Folder, source: Output) -> None:
 
 
 def _diffuse(folder: Folder, source: Output) -> Closure:
-    if folder.constant_value(source.input("Roughness")) > 0.0:
-        folder.report_node(source.b_node, "Roughness is not supported yet; left out")
-    return {"kind": "diffuse", "color": folder.color(source.input("Color"))}
+    roughness = folder.unit(folder.value(source.input("Roughness")))
+    return {"kind": "diffuse", "color": folder.color(source.input("Color")), "roughness": roughness}
 
 
 def _rough(kind: str, *more: str) -> Callable[[Folder, Output], Closure]:
@@ -178,6 +176,9 @@ def _principled(folder: Folder, source: Output) -> Closure:
         entry = source.input(identifier)
         name = identifier.lower().replace(" ", "_")
         record[name] = folder.color(entry) if is_color else folder.value(entry)
+    diffuse_roughness = source.find("Diffuse Roughness")
+    if diffuse_roughness is not None:  # not in Blender 4.2
+        record["diffuse_roughness"] = folder.value(diffuse_roughness)
     return record
 
 

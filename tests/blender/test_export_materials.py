@@ -6,6 +6,8 @@ import pytest
 
 from tests.blender import build
 
+HAS_DIFFUSE_ROUGHNESS = bpy.app.version >= (4, 3)
+
 
 @pytest.fixture
 def closures(exported):
@@ -26,7 +28,16 @@ def approx(closure):
 @pytest.mark.parametrize(
     ("kind", "inputs", "expected"),
     [
-        ("BsdfDiffuse", {"Color": (0.1, 0.2, 0.3)}, {"kind": "diffuse", "color": [0.1, 0.2, 0.3]}),
+        (
+            "BsdfDiffuse",
+            {"Color": (0.1, 0.2, 0.3)},
+            {"kind": "diffuse", "color": [0.1, 0.2, 0.3], "roughness": 0.0},
+        ),
+        (
+            "BsdfDiffuse",
+            {"Color": (0.1, 0.2, 0.3), "Roughness": 0.7},
+            {"kind": "diffuse", "color": [0.1, 0.2, 0.3], "roughness": 0.7},
+        ),
         (
             "BsdfAnisotropic",
             {"Color": (0.1, 0.2, 0.3), "Roughness": 0.4},
@@ -106,8 +117,16 @@ def test_principled(scene, closures):
             "sheen_weight": 0.3,
             "sheen_roughness": 0.7,
             "sheen_tint": [0.6, 0.5, 0.4],
+            **({"diffuse_roughness": 0.0} if HAS_DIFFUSE_ROUGHNESS else {}),
         }
     )
+
+
+@pytest.mark.skipif(not HAS_DIFFUSE_ROUGHNESS, reason="Blender 4.2 has no Diffuse Roughness")
+def test_principled_diffuse_roughness(scene, closures, problems):
+    b_material = build.surface("ShaderNodeBsdfPrincipled", Diffuse_Roughness=0.6)
+    assert only(closures(b_material))["diffuse_roughness"] == pytest.approx(0.6)
+    assert not any("Material" in text for text in problems())
 
 
 def test_untouched_principled_has_blenders_defaults_and_no_problem(scene, closures, problems):
@@ -182,7 +201,9 @@ def test_reroutes_muted_nodes_and_groups(scene, closures, problems):
     b_tree.links.new(b_gamma.outputs[0], b_nodes.inputs[0])
     b_tree.links.new(b_nodes.outputs[0], b_reroute.inputs[0])
     b_tree.links.new(b_reroute.outputs[0], b_output.inputs["Surface"])
-    assert only(closures(b_material)) == approx({"kind": "diffuse", "color": [0.3, 0.6, 0.9]})
+    assert only(closures(b_material)) == approx(
+        {"kind": "diffuse", "color": [0.3, 0.6, 0.9], "roughness": 0.0}
+    )
     assert not any("Material" in text for text in problems())
 
 

@@ -123,10 +123,12 @@ def test_closed_room_of_glass(check, ior):
 def test_inputs_that_make_no_sense(kind, value):
     """Whatever a color or number is, the picture has only numbers."""
     inputs = {
-        "diffuse": {"color": value},
+        "diffuse": {"color": value, "roughness": value},
         "glossy": {"color": value, "roughness": value},
         "glass": {"color": value, "roughness": value, "ior": value},
-        "principled": {"base_color": value, "roughness": value, "ior": value, "metallic": value},
+        "principled": dict.fromkeys(
+            ("base_color", "roughness", "diffuse_roughness", "ior", "metallic"), value
+        ),
         "transparent": {"color": value},
     }[kind]
     scene = furnace()

@@ -160,11 +160,14 @@ GOLD = (0.9, 0.7, 0.4)
 BLUE = (0.2, 0.35, 0.7)
 TINT = (0.9, 0.95, 0.8)
 _diffuse = shader("BsdfDiffuse", Color=BLUE)
+_rough_diffuse = shader("BsdfDiffuse", Color=GOLD, Roughness=1.0)
 _coated = shader(
     "BsdfPrincipled", Base_Color=BLUE, Roughness=0.5, Metallic=0.6, Coat_Weight=1.0, Coat_Roughness=0.15
 )
 MATERIALS: dict[str, Surface] = {
     "diffuse": _diffuse,
+    "diffuse_rough_0.3": shader("BsdfDiffuse", Color=BLUE, Roughness=0.3),
+    "diffuse_rough_1.0": _rough_diffuse,
     "glossy_0.1": shader("BsdfGlossy", Color=GOLD, Roughness=0.1),
     "glossy_0.3": shader("BsdfGlossy", Color=GOLD, Roughness=0.3),
     "glossy_0.6": shader("BsdfGlossy", Color=GOLD, Roughness=0.6),
@@ -207,6 +210,7 @@ MATERIALS: dict[str, Surface] = {
     ),
     "mix": joined("MixShader", _diffuse, shader("BsdfGlossy", Color=GOLD, Roughness=0.4), 0.3),
     "bumped": bumped(_diffuse, "Normal"),
+    "bumped_rough": bumped(_rough_diffuse, "Normal"),
     "bumped_glossy": bumped(shader("BsdfGlossy", Color=GOLD, Roughness=0.3), "Normal"),
     "bumped_glass": bumped(
         shader("BsdfPrincipled", Base_Color=TINT, Roughness=0.0, IOR=1.45, Transmission_Weight=1.0), "Normal"
@@ -220,6 +224,11 @@ MATERIALS: dict[str, Surface] = {
     "add": joined("AddShader", _diffuse, shader("Emission", Color=GOLD, Strength=0.3)),
 }
 """The ball's surface, by name; each is rendered under a constant world and under a square lamp."""
+if bpy.app.version >= (4, 3):  # Blender 4.2 has no Diffuse Roughness
+    for roughness in (0.3, 1.0):
+        MATERIALS[f"principled_diffuse_rough_{roughness}"] = shader(
+            "BsdfPrincipled", Base_Color=BLUE, Roughness=0.5, Diffuse_Roughness=roughness
+        )
 
 LIGHTS = ("world", "lamp")
 LAMP_CASES = (*LAMPS, "emissive_quad", "world")

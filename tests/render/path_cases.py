@@ -78,6 +78,19 @@ def _room() -> None:
     cases.add_lamp(cases.MATERIAL_LAMP)
 
 
+def _closed_room(roughness: float) -> Callable[[], None]:
+    """The lamp shines at the ceiling, out of the picture: all light that is seen met it and more."""
+
+    def add() -> None:
+        walls = common.box_faces((-2.0, -4.5, 0.001), (2.0, 2.0, 3.4))
+        add_polygons("Walls", walls, shader("BsdfDiffuse", Color=(0.8, 0.8, 0.8), Roughness=roughness))
+        cases.add_ball(shader("BsdfDiffuse", Color=GOLD, Roughness=roughness))
+        where = ((0.3, -1.0, 2.7), (0.0, -0.7, 3.4))
+        cases.add_lamp(cases.Lamp("AREA", 60.0, {"shape": "SQUARE", "size": 0.4}, where))
+
+    return add
+
+
 def _ball_before_a_mirror(surface: Surface) -> Callable[[], None]:
     def add() -> None:
         add_polygons("Mirror", [_wall(y=1.2)], MIRROR)
@@ -209,6 +222,8 @@ def _below_a_luminaire() -> None:
 
 PATHS: dict[str, Callable[[], None]] = {
     "diffuse_room": _room,
+    "closed_room": _closed_room(0.0),
+    "rough_closed_room": _closed_room(1.0),
     "mirror_in_mirror": _ball_before_a_mirror(MIRROR),
     "glossy_in_mirror": _ball_before_a_mirror(shader("BsdfGlossy", Color=GOLD, Roughness=0.3)),
     "coat_in_mirror": _ball_before_a_mirror(

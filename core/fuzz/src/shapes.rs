@@ -163,6 +163,7 @@ const PRINCIPLED: Fields = &[
     ("base_color", Numbers(3)),
     ("metallic", Number),
     ROUGHNESS,
+    ("diffuse_roughness", Number),
     IOR,
     ("alpha", Number),
     ("specular_ior_level", Number),
@@ -181,7 +182,7 @@ const PRINCIPLED: Fields = &[
 
 /// Closures by name.
 pub const CLOSURES: &[(&str, Fields)] = &[
-    ("diffuse", &[COLOR]),
+    ("diffuse", &[COLOR, ROUGHNESS]),
     ("glossy", &[COLOR, ROUGHNESS]),
     ("glass", &[COLOR, ROUGHNESS, IOR]),
     ("refraction", &[COLOR, ROUGHNESS, IOR]),

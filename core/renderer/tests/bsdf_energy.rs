@@ -3,7 +3,8 @@
 mod bsdf_support;
 
 use bsdf_support::{
-    RADIANCE, diffuse, glass, glossy, prepared, principled, sampled_albedo, seen, sheen, translucent,
+    RADIANCE, diffuse, glass, glossy, prepared, principled, rough_diffuse, sampled_albedo, seen, sheen,
+    translucent,
 };
 use rgp_renderer::bsdf::{LobeSet, PreparedMaterial};
 use rgp_renderer::color::Rgb;
@@ -88,6 +89,25 @@ fn lambert_albedo_is_its_color() {
         let bsdf = seen(&bsdf_of, cos, true);
         assert_eq!(bsdf.albedo(LobeSet::ALL), Rgb::splat(0.37));
         assert!((sampled_albedo(&bsdf, LobeSet::ALL, RADIANCE, 48) - 0.37).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn white_rough_diffuse_returns_everything_and_others_what_they_say() {
+    for roughness in [1e-4, 0.05, 0.3, 1.0] {
+        for color in [1.0, 0.8, 0.3] {
+            let material = prepared(rough_diffuse(color, roughness));
+            for cos in COSINES {
+                let what = format!("rough diffuse {roughness} of {color}, cosine {cos}");
+                let sampled = albedo(&material, cos, true, OUTSIDE, &what);
+                let exact = seen(&material, cos, true).albedo(LobeSet::ALL).mean();
+                assert!(exact < color + 1e-5, "{what}: {exact}");
+                assert!(
+                    color < 1.0 || (sampled - 1.0).abs() < OUTSIDE && exact > 1.0 - 1e-5,
+                    "{what}: {exact}"
+                );
+            }
+        }
     }
 }
 
@@ -180,6 +200,13 @@ fn cycles() -> Vec<(ClosureRecord, bool, Rings)> {
         (ClosureRecord::Glass { color: Rgb([0.9, 0.5, 0.1]), roughness: 0.7, ior: 1.45 }, true,
             [[0.8869, 0.4636, 0.0873], [0.8919, 0.4767, 0.0918], [0.8976, 0.4917, 0.0970]]),
         (refraction, true, gray([0.6650, 0.7233, 0.8468])),
+        (rough_diffuse(1.0, 1.0), true, gray([1.0, 1.0, 1.0])),
+        (ClosureRecord::Diffuse { color: Rgb([0.9, 0.5, 0.1]), roughness: 0.3 }, true,
+            [[0.8946, 0.4883, 0.0969], [0.8905, 0.4796, 0.0947], [0.8863, 0.4705, 0.0923]]),
+        (ClosureRecord::Diffuse { color: Rgb([0.9, 0.5, 0.1]), roughness: 1.0 }, true,
+            [[0.8839, 0.4664, 0.0914], [0.8720, 0.4416, 0.0850], [0.8593, 0.4153, 0.0783]]),
+        (principled(|p| (p.base_color, p.diffuse_roughness) = (Rgb([0.9, 0.5, 0.1]), 1.0)), true,
+            [[0.8925, 0.5190, 0.1836], [0.8789, 0.4745, 0.1394], [0.8647, 0.4375, 0.1134]]),
         (principled(|_| ()), true, gray([0.8171, 0.8112, 0.8075])),
         (principled(|p| (p.base_color, p.roughness) = (Rgb::WHITE, 0.7)), true, gray([0.9968, 0.9988, 0.9997])),
         (principled(|p| (p.base_color, p.roughness) = (Rgb([0.8, 0.3, 0.05]), 0.4)), true,

@@ -146,7 +146,7 @@ fn any_color() -> impl Strategy<Value = Rgb> {
 
 fn any_closure() -> impl Strategy<Value = ClosureRecord> {
     prop_oneof![
-        any_color().prop_map(|color| ClosureRecord::Diffuse { color }),
+        (any_color(), any_value()).prop_map(|(color, roughness)| ClosureRecord::Diffuse { color, roughness }),
         any_color().prop_map(|color| ClosureRecord::Translucent { color }),
         (any_color(), any_value()).prop_map(|(color, roughness)| ClosureRecord::Sheen { color, roughness }),
         (any_color(), any_value()).prop_map(|(color, roughness)| ClosureRecord::Glossy { color, roughness }),
@@ -165,6 +165,7 @@ fn any_closure() -> impl Strategy<Value = ClosureRecord> {
                 emission_color: c[3],
                 metallic: v[0],
                 roughness: v[1],
+                diffuse_roughness: v[3],
                 ior: v[2],
                 alpha: v[3],
                 specular_ior_level: v[4],

@@ -5,8 +5,8 @@ mod bsdf_support;
 use std::f32::consts::FRAC_1_PI;
 
 use bsdf_support::{
-    IMPORTANCE, RADIANCE, Rng, at, chi_square, diffuse, glass, glossy, principled, sampled_albedo, sheen,
-    significance, translucent,
+    IMPORTANCE, RADIANCE, Rng, at, chi_square, diffuse, glass, glossy, principled, rough_diffuse,
+    sampled_albedo, sheen, significance, translucent,
 };
 use glam::{Quat, Vec3};
 use rgp_renderer::bsdf::{Bsdf, LobeSet, MaterialTable};
@@ -76,6 +76,7 @@ fn coated() -> ClosureRecord {
 fn materials() -> Vec<(&'static str, Linked)> {
     vec![
         ("a bumped diffuse", Linked::new(&[diffuse(0.8)], &[(0, false)])),
+        ("a bumped rough diffuse", Linked::new(&[rough_diffuse(0.8, 1.0)], &[(0, false)])),
         ("a bumped diffuse and a flat glossy", Linked::new(&[diffuse(0.8), glossy(0.9, 0.4)], &[(0, false)])),
         ("a flat diffuse and a bumped glossy", Linked::new(&[diffuse(0.8), glossy(0.9, 0.7)], &[(1, false)])),
         ("two bumps", Linked::new(&[diffuse(0.8), glossy(0.9, 0.6)], &[(0, false), (1, false)])),
@@ -118,6 +119,7 @@ fn no_light_is_made_and_little_lost() {
         (vec![metal.clone()], vec![(0, false)]),
         (vec![metal], vec![(0, true)]),
         (vec![velvet], vec![(0, false)]),
+        (vec![rough_diffuse(1.0, 1.0)], vec![(0, false)]),
     ];
     let albedo = |bsdf: &Bsdf<'_>| sampled_albedo(bsdf, LobeSet::ALL, RADIANCE, 24);
     for (index, (closures, links)) in white.iter().enumerate() {

@@ -3,8 +3,8 @@
 mod bsdf_support;
 
 use bsdf_support::{
-    IMPORTANCE, RADIANCE, Rng, at, chi_square, diffuse, glass, glossy, prepared, principled, seen, sheen,
-    significance, translucent,
+    IMPORTANCE, RADIANCE, Rng, at, chi_square, diffuse, glass, glossy, prepared, principled, rough_diffuse,
+    seen, sheen, significance, translucent,
 };
 use glam::Vec3;
 use rgp_renderer::bsdf::{LobeSet, PreparedMaterial};
@@ -51,6 +51,8 @@ fn wide_lobes_and_reflections_are_drawn_from_their_density() {
     };
     for cos in COSINES {
         add("Lambert", prepared(diffuse(0.8)), cos);
+        add("rough diffuse 0.3", prepared(rough_diffuse(0.8, 0.3)), cos);
+        add("rough diffuse 1", prepared(rough_diffuse(0.8, 1.0)), cos);
         add("translucent", prepared(translucent(0.8)), cos);
         for (name, roughness) in [("sheen 0.3", 0.3), ("sheen 0.5", 0.5), ("sheen 1", 1.0)] {
             add(name, prepared(sheen(0.9, roughness)), cos);
@@ -87,6 +89,7 @@ fn principled_mixes_are_drawn_from_their_density() {
         p.roughness = 0.6;
         p.transmission_weight = 0.4;
         p.sheen_weight = 0.5;
+        p.diffuse_roughness = 0.8;
     });
     let mut cases = Vec::new();
     for cos in COSINES {
@@ -107,6 +110,7 @@ fn principled_mixes_are_drawn_from_their_density() {
 fn weight_is_value_times_cosine_over_density() {
     let materials = [
         prepared(diffuse(0.5)),
+        prepared(rough_diffuse(0.5, 0.7)),
         prepared(translucent(0.5)),
         prepared(sheen(0.5, 0.6)),
         prepared(glossy(0.8, 0.3)),

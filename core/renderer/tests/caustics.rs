@@ -90,7 +90,7 @@ fn ball(radius: f32, size: f32, material: MaterialRecord) -> Scene {
 fn varnished_tile(roughness: f32) -> Scene {
     let mut builder = SceneBuilder::default();
     let varnish = material(&[
-        ClosureRecord::Diffuse { color: Rgb::splat(0.4) },
+        ClosureRecord::Diffuse { color: Rgb::splat(0.4), roughness: 0.0 },
         ClosureRecord::Glossy { color: Rgb::splat(0.3), roughness: 0.45 },
     ]);
     place(&mut builder, floor(0.2, 0.0), &[varnish]);

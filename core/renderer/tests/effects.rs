@@ -42,7 +42,7 @@ fn builder_of_everything(pixels: u32, shade: f32) -> SceneBuilder {
     place(&mut builder, sphere(3, 0.2, Vec3::new(-0.3, 0.5, -0.7)), &[glossy(0.9, 0.0)]);
     let panel = [
         ClosureRecord::Transparent { color: Rgb::splat(0.5) },
-        ClosureRecord::Diffuse { color: Rgb::splat(0.3 * shade) },
+        ClosureRecord::Diffuse { color: Rgb::splat(0.3 * shade), roughness: 0.0 },
     ];
     place(&mut builder, cuboid(Vec3::new(0.2, -0.3, -0.9), Vec3::new(0.3, 0.1, 0.2)), &[material(&panel)]);
     place(
@@ -142,7 +142,7 @@ fn lights_are_a_partition() {
 #[test]
 fn on_changes_nothing_where_nothing_calls_for_it() {
     let scenes = [
-        ("diffuse", room(ClosureRecord::Diffuse { color: Rgb::splat(0.5) }).builder()),
+        ("diffuse", room(ClosureRecord::Diffuse { color: Rgb::splat(0.5), roughness: 0.0 }).builder()),
         ("glossy", room(ClosureRecord::Glossy { color: Rgb::splat(0.8), roughness: 0.7 }).builder()),
         ("glass", room(glass()).builder()),
         ("one mirror in the world", {

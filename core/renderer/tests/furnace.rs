@@ -77,7 +77,7 @@ fn sphere_of_albedo_one_half_and_nine_tenths() {
 #[test]
 fn box_of_half_mirrors() {
     let closures = [
-        ClosureRecord::Diffuse { color: Rgb::splat(0.4) },
+        ClosureRecord::Diffuse { color: Rgb::splat(0.4), roughness: 0.0 },
         ClosureRecord::Glossy { color: Rgb::splat(0.3), roughness: 0.0 },
         ClosureRecord::Emission { radiance: Rgb::WHITE },
     ];

@@ -154,7 +154,11 @@ fn energy_balance_of_a_closed_box() {
     let (mut light, mut surface) = ([0.0; 3], 0.0);
     for (side, corners) in walls(low, high).into_iter().enumerate() {
         let mut builder = SceneBuilder::default();
-        place(&mut builder, cuboid(low, high), &[material(&[ClosureRecord::Diffuse { color }])]);
+        place(
+            &mut builder,
+            cuboid(low, high),
+            &[material(&[ClosureRecord::Diffuse { color, roughness: 0.0 }])],
+        );
         builder.add_lamp(point_lamp(flux as f32, DVec3::new(0.2, 1.5, 0.3)));
         builder.set_camera(facing_wall(side, corners));
         let picture = finish_and_render(builder, &settings(200_000, RESOLUTION, RAYS));

@@ -46,7 +46,8 @@ fn same_picture(constant: MaterialRecord, varying: MaterialRecord) {
 
 #[test]
 fn a_program_of_constants_changes_no_lambert_surface() {
-    let varying = programmed(ClosureRecord::Diffuse { color: Rgb::splat(0.9) }, &[(Input::Color, 0.3)]);
+    let varying =
+        programmed(ClosureRecord::Diffuse { color: Rgb::splat(0.9), roughness: 0.0 }, &[(Input::Color, 0.3)]);
     same_picture(diffuse(0.3), varying);
 }
 
@@ -58,9 +59,16 @@ fn a_program_of_constants_changes_no_glossy_surface() {
 }
 
 #[test]
+fn a_program_of_constants_changes_no_rough_diffuse_surface() {
+    let rough = |roughness| ClosureRecord::Diffuse { color: Rgb::splat(0.7), roughness };
+    same_picture(material(&[rough(0.9)]), programmed(rough(0.0), &[(Input::Roughness, 0.9)]));
+}
+
+#[test]
 fn a_program_of_constants_changes_no_share() {
     let clear = ClosureRecord::Transparent { color: Rgb::WHITE };
-    let mut constant = material(&[ClosureRecord::Diffuse { color: Rgb::splat(0.5) }, clear.clone()]);
+    let mut constant =
+        material(&[ClosureRecord::Diffuse { color: Rgb::splat(0.5), roughness: 0.0 }, clear.clone()]);
     let mut varying = constant.clone();
     for part in &mut constant.closures {
         part.weight = Rgb::splat(0.5);
@@ -198,7 +206,8 @@ fn below_a_panel(is_textured: bool) -> [[f64; 2]; 2] {
     let mut builder = SceneBuilder::default();
     if is_textured {
         let typical = ClosureRecord::Emission { radiance: Rgb::splat(4.5) };
-        let mut record = material(&[typical, ClosureRecord::Diffuse { color: Rgb::splat(0.5) }]);
+        let mut record =
+            material(&[typical, ClosureRecord::Diffuse { color: Rgb::splat(0.5), roughness: 0.0 }]);
         let [bright, dark] = radiances;
         let texels = four_texels([bright, dark, bright, dark]);
         record.program = texture_program(&mut builder, texels, Interpolation::Closest, Input::Radiance);

@@ -3,6 +3,7 @@
 use super::dielectric::{self, Glass};
 use super::lobe::{Lobe, transmission_class};
 use super::normals::Layers;
+use super::oren_nayar::LEAST_ROUGHNESS;
 use super::principled::{self, Principled};
 use super::reflection::{self, Roughness};
 use super::{LobeList, LobeSet};
@@ -23,8 +24,10 @@ pub(super) struct Part {
 /// A closure that makes lobes; transparency, constant emission and Lambert about the frame's normal are merged in the material.
 #[derive(Clone, Debug)]
 pub(super) enum PreparedClosure {
-    /// Its color is in the weight.
-    Diffuse,
+    Diffuse {
+        color: Rgb,
+        roughness: f32,
+    },
     Glossy {
         color: Rgb,
         rough: Roughness,
@@ -54,7 +57,9 @@ impl PreparedClosure {
         slot: u8,
     ) -> Rgb {
         match self {
-            Self::Diffuse => lobes.push(Lobe::lambert(weight, slot)),
+            Self::Diffuse { color, roughness } => {
+                lobes.push(Lobe::diffuse(weight * *color, *color, *roughness, cos.base, slot));
+            }
             Self::Glossy { color, rough } => {
                 reflection::push_constant(lobes, weight, *color, *rough, cos.base, slot);
             }
@@ -84,7 +89,7 @@ impl PreparedClosure {
             Self::Glass(glass) => glass.classes(),
             Self::Refraction { rough, ior } => transmission_class(rough.alpha, *ior),
             Self::Translucent => LobeSet::TRANSLUCENT,
-            Self::Diffuse | Self::Sheen { .. } => LobeSet::DIFFUSE,
+            Self::Diffuse { .. } | Self::Sheen { .. } => LobeSet::DIFFUSE,
             Self::Principled(principled) => principled.classes(),
         }
     }
@@ -92,7 +97,7 @@ impl PreparedClosure {
     /// True when light is refracted.
     pub(super) fn transmits(&self) -> bool {
         match self {
-            Self::Diffuse | Self::Glossy { .. } | Self::Translucent | Self::Sheen { .. } => false,
+            Self::Diffuse { .. } | Self::Glossy { .. } | Self::Translucent | Self::Sheen { .. } => false,
             Self::Glass(_) | Self::Refraction { .. } => true,
             Self::Principled(principled) => principled.transmits(),
         }
@@ -129,7 +134,7 @@ pub(super) fn most_lobes(closure: &ClosureRecord, is_merged: bool) -> usize {
         | ClosureRecord::Sheen { .. } => 1,
         ClosureRecord::Glass { .. } => 2,
         ClosureRecord::Principled(_) => principled::LOBES,
-        ClosureRecord::Diffuse { .. } => usize::from(!is_merged),
+        ClosureRecord::Diffuse { roughness, .. } => usize::from(!is_merged || *roughness >= LEAST_ROUGHNESS),
         _ => 0,
     }
 }

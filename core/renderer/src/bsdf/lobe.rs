@@ -4,6 +4,7 @@ use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
+use super::oren_nayar::{Facets, LEAST_ROUGHNESS};
 use super::sheen::Sheen;
 use super::{LobeSet, ShadingFrame, fresnel, ggx};
 use crate::color::Rgb;
@@ -40,6 +41,8 @@ pub(super) fn transmission_class(alpha: f32, eta: f32) -> LobeSet {
 pub(super) enum Shape {
     /// Lambert reflection.
     Lambert,
+    /// Diffuse reflection from rough facets.
+    OrenNayar(Facets),
     /// Lambert transmission.
     Translucent,
     /// Reflection from fibers.
@@ -70,7 +73,8 @@ pub(super) struct Lobe {
     pub(super) fresnel: Fresnel,
     /// Factor on everything: color, share, energy compensation, dimming by the layers above.
     pub(super) weight: Rgb,
-    /// The part of `weight` that stands for light of many bounces between microfacets. It depends on the viewer.
+    /// What stands for light of many bounces between microfacets. Of GGX lobes it is a part of `weight` that depends on the
+    /// viewer, of [`Shape::OrenNayar`] what [`Facets::bounced`] says.
     pub(super) gain: Rgb,
     /// Share of light arriving uniformly from everywhere that is sent to the viewer.
     pub(super) albedo: Rgb,
@@ -99,6 +103,19 @@ impl Lobe {
         }
     }
 
+    /// Diffuse reflection of `albedo` where nothing is lost between facets of `color`, towards a viewer at `cos` from the
+    /// normal.
+    pub(super) fn diffuse(albedo: Rgb, color: Rgb, roughness: f32, cos: f32, slot: u8) -> Self {
+        let lambert = Self::lambert(albedo, slot);
+        if roughness < LEAST_ROUGHNESS {
+            return lambert;
+        }
+        let facets = Facets::new(roughness);
+        let bounced = facets.bounced(color);
+        let albedo = albedo * facets.albedo(bounced, cos);
+        Self { shape: Shape::OrenNayar(facets), gain: bounced, albedo, ..lambert }
+    }
+
     /// Lambert transmission of `albedo`.
     pub(super) fn translucent(albedo: Rgb, slot: u8) -> Self {
         Self { shape: Shape::Translucent, class: LobeSet::TRANSLUCENT, ..Self::lambert(albedo, slot) }
@@ -108,6 +125,15 @@ impl Lobe {
     pub(super) fn sheen(color: Rgb, roughness: f32, cos: f32, slot: u8) -> Self {
         let (sheen, albedo) = Sheen::new(roughness, cos);
         Self { shape: Shape::Sheen(sheen), ..Self::lambert(color * albedo, slot) }
+    }
+
+    /// What irradiance over π is multiplied with where only that is known. Facets return more of light at a slant: photons
+    /// bring that along, see [`super::Bsdf::lambert_factor`], and what leaves is taken to do so evenly.
+    pub(super) fn read_albedo(&self) -> Rgb {
+        match self.shape {
+            Shape::OrenNayar(facets) => self.weight * facets.mean_albedo(self.gain),
+            _ => self.albedo,
+        }
     }
 
     /// True for lobes on the side away from the viewer.
@@ -138,6 +164,10 @@ impl Lobe {
         let (cos_o, cos_i) = (wo.dot(frame.ns).max(1e-6), wi.dot(frame.ns).abs().max(1e-6));
         match self.shape {
             Shape::Lambert | Shape::Translucent => (self.weight * FRAC_1_PI, cos_i * FRAC_1_PI),
+            Shape::OrenNayar(facets) => {
+                let value = facets.value(self.gain, [cos_o, cos_i], wo.dot(wi));
+                (self.weight * value, cos_i * FRAC_1_PI)
+            }
             Shape::Sheen(sheen) => {
                 let density = sheen.density(frame, wo, wi);
                 (self.weight * (density / cos_i), density)
@@ -178,7 +208,9 @@ impl Lobe {
             basis.from_local(ggx::sample_visible_normal(alpha, basis.to_local(wo), u))
         };
         match self.shape {
-            Shape::Lambert => Some(Frame::new(frame.ns).from_local(cosine_hemisphere(u))),
+            Shape::Lambert | Shape::OrenNayar(_) => {
+                Some(Frame::new(frame.ns).from_local(cosine_hemisphere(u)))
+            }
             Shape::Translucent => Some(-Frame::new(frame.ns).from_local(cosine_hemisphere(u))),
             Shape::Sheen(sheen) => Some(sheen.sample(frame, wo, u)),
             Shape::Reflection { alpha } => {

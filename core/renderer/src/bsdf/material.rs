@@ -9,6 +9,7 @@ use super::closure::{Part, PreparedClosure, most_lobes};
 use super::dielectric::Glass;
 use super::lobe::Lobe;
 use super::normals::{Layers, Normals};
+use super::oren_nayar::LEAST_ROUGHNESS;
 use super::principled::{self, Principled};
 use super::reflection::Roughness;
 use super::sanitize::Sanitizer;
@@ -134,7 +135,7 @@ impl PreparedMaterial {
     fn add(&mut self, weight: Rgb, closure: &ClosureRecord, index: usize) {
         let is_merged = self.normals.is_shared();
         let (weight, closure) = match *closure {
-            ClosureRecord::Diffuse { color } if is_merged => {
+            ClosureRecord::Diffuse { color, roughness } if is_merged && roughness < LEAST_ROUGHNESS => {
                 self.lambert += weight * color;
                 return;
             }
@@ -150,7 +151,9 @@ impl PreparedMaterial {
                 self.holdout += weight.mean();
                 return;
             }
-            ClosureRecord::Diffuse { color } => (weight * color, PreparedClosure::Diffuse),
+            ClosureRecord::Diffuse { color, roughness } => {
+                (weight, PreparedClosure::Diffuse { color, roughness })
+            }
             ClosureRecord::Translucent { color } => (weight * color, PreparedClosure::Translucent),
             ClosureRecord::Glossy { color, roughness } => {
                 (weight, PreparedClosure::Glossy { color, rough: Roughness::new(roughness) })

@@ -25,6 +25,7 @@ mod ggx;
 mod lobe;
 mod material;
 mod normals;
+mod oren_nayar;
 mod photon;
 mod principled;
 mod reflection;
@@ -62,7 +63,7 @@ pub struct LobeSet(u8);
 impl LobeSet {
     /// No class.
     pub const EMPTY: Self = Self(0);
-    /// Lambert reflection, and sheen: read from irradiance by its albedo, exact where it is followed.
+    /// Diffuse reflection, smooth or rough, and sheen: read from irradiance by its albedo, exact where it is followed.
     pub const DIFFUSE: Self = Self(1);
     /// GGX reflection with alpha of [`ROUGH_ALPHA`] and above: read from direction bins.
     pub const ROUGH: Self = Self(2);
@@ -72,7 +73,7 @@ impl LobeSet {
     pub const DELTA: Self = Self(8);
     /// Lambert transmission: what arrives on one side leaves the other.
     pub const TRANSLUCENT: Self = Self(16);
-    /// Lambert's, on either side, and sheen.
+    /// Diffuse reflection, Lambert transmission, and sheen.
     pub const LAMBERT: Self = Self(17);
     /// Every class with a finite density.
     pub const NON_DELTA: Self = Self(23);
@@ -298,7 +299,7 @@ impl Bsdf<'_> {
     /// diffuse lobes.
     #[must_use]
     pub fn diffuse_albedo(&self) -> Rgb {
-        self.albedo(LobeSet::DIFFUSE)
+        self.lobes(LobeSet::DIFFUSE).map(Lobe::read_albedo).sum()
     }
 
     /// The BSDF (sr⁻¹) of the lobes of `set` for `wi`, without the cosine; delta lobes give nothing.

@@ -175,7 +175,7 @@ impl Bsdf<'_> {
         let normals = self.material.normals();
         let own = || normals.frame(lobe.normal, self.wo, &self.frame);
         match lobe.shape {
-            Shape::Lambert | Shape::Translucent => {
+            Shape::Lambert | Shape::OrenNayar(_) | Shape::Translucent => {
                 let outward = normals.vector(lobe.normal);
                 let ns = if self.frame.entering { outward } else { -outward };
                 ShadingFrame { ns, ..self.frame }
@@ -201,22 +201,29 @@ impl Bsdf<'_> {
         (value * (arriving * cos.abs() / wi.dot(self.frame.ns).abs().max(1e-6)), pdf)
     }
 
-    /// Flux over the area of the surface times this is the irradiance that lobes of [`LobeSet::LAMBERT`] with other normals
-    /// than the frame's see, as their mean by albedo.
+    /// Flux over the area of the surface times this is the irradiance that lobes of [`LobeSet::LAMBERT`] see which have other
+    /// normals than the frame's, or return more of light at a slant: their mean by albedo.
     #[must_use]
     #[inline]
     pub fn lambert_factor(&self) -> Rgb {
-        if self.material.normals().is_shared() { Rgb::WHITE } else { self.own_lambert_factor() }
+        let is_rough = |lobe: &Lobe| matches!(lobe.shape, Shape::OrenNayar(_));
+        let is_even = self.material.normals().is_shared() && !self.lobes.iter().any(is_rough);
+        if is_even { Rgb::WHITE } else { self.own_lambert_factor() }
+    }
+
+    /// Irradiance on a diffuse lobe that has a normal of its own, of a photon's flux over the area of the surface.
+    fn arriving(&self, lobe: &Lobe) -> f32 {
+        let frame = self.own_frame(lobe);
+        self.material.normals().unshadowed(frame.ns, self.wo) * frame.irradiance_factor(self.wo)
     }
 
     #[inline(never)]
     fn own_lambert_factor(&self) -> Rgb {
         let (mut seen, mut total) = (Rgb::BLACK, Rgb::BLACK);
         for lobe in self.lobes(LobeSet::LAMBERT) {
-            let frame = self.own_frame(lobe);
-            let arriving = self.material.normals().unshadowed(frame.ns, self.wo);
-            seen += lobe.albedo * (arriving * frame.irradiance_factor(self.wo));
-            total += lobe.albedo;
+            let arriving = if lobe.normal == 0 { 1.0 } else { self.arriving(lobe) };
+            seen += lobe.albedo * arriving;
+            total += lobe.read_albedo();
         }
         Rgb([0, 1, 2].map(|c| if total.0[c] > 0.0 { seen.0[c] / total.0[c] } else { 1.0 }))
     }

@@ -45,7 +45,9 @@ impl Bsdf<'_> {
     /// What photons of `lobe` are scattered about.
     fn photon_frame(&self, lobe: &Lobe) -> ShadingFrame {
         match lobe.shape {
-            Shape::Lambert | Shape::Translucent => ShadingFrame { ns: self.frame.ng, ..self.frame },
+            Shape::Lambert | Shape::OrenNayar(_) | Shape::Translucent => {
+                ShadingFrame { ns: self.frame.ng, ..self.frame }
+            }
             _ if lobe.normal != 0 => self.own_frame(lobe),
             _ => self.frame,
         }

@@ -4,6 +4,7 @@
 use super::dielectric::Glass;
 use super::lobe::Lobe;
 use super::normals::Layers;
+use super::oren_nayar::LEAST_ROUGHNESS;
 use super::reflection::{Layer, Metal, Roughness};
 use super::{LobeList, LobeSet, fresnel};
 use crate::color::Rgb;
@@ -34,6 +35,7 @@ pub(super) struct Principled {
     /// Radiance, as seen through the coat.
     pub(super) emission: Rgb,
     base_color: Rgb,
+    diffuse_roughness: f32,
     sheen: Option<SheenLayer>,
     coat: Option<Coat>,
     metallic: f32,
@@ -84,6 +86,7 @@ impl Principled {
         Self {
             emission: record.emission_color * record.emission_strength,
             base_color: record.base_color,
+            diffuse_roughness: record.diffuse_roughness,
             sheen: (record.sheen_weight > NEGLIGIBLE).then(|| SheenLayer {
                 color: record.sheen_tint * record.sheen_weight,
                 roughness: record.sheen_roughness,
@@ -116,12 +119,13 @@ impl Principled {
         self.metallic < 1.0 && self.transmission > NEGLIGIBLE
     }
 
-    /// The albedo where nothing but a diffuse lobe is left.
+    /// The albedo where nothing but Lambert's lobe is left.
     pub(super) fn lambert(&self) -> Option<Rgb> {
         let bare = self.coat.is_none()
             && self.sheen.is_none()
             && self.metallic <= NEGLIGIBLE
-            && self.transmission <= NEGLIGIBLE;
+            && self.transmission <= NEGLIGIBLE
+            && self.diffuse_roughness < LEAST_ROUGHNESS;
         (bare && self.specular.is_none()).then_some(self.base_color)
     }
 
@@ -215,7 +219,8 @@ impl Principled {
                 None => 1.0,
             };
             if !self.base_color.is_black() {
-                lobes.push(Lobe::lambert(weight * self.base_color * (base * through), slot + 5));
+                let albedo = weight * self.base_color * (base * through);
+                lobes.push(Lobe::diffuse(albedo, self.base_color, self.diffuse_roughness, cos, slot + 5));
             }
         }
         below_coat

@@ -60,7 +60,10 @@ impl Sanitizer {
     pub(super) fn closure(&mut self, closure: &ClosureRecord) -> ClosureRecord {
         const UNIT: [f32; 2] = [0.0, 1.0];
         match *closure {
-            ClosureRecord::Diffuse { color } => ClosureRecord::Diffuse { color: self.color(color, 1.0) },
+            ClosureRecord::Diffuse { color, roughness } => ClosureRecord::Diffuse {
+                color: self.color(color, 1.0),
+                roughness: self.value(roughness, UNIT),
+            },
             ClosureRecord::Transparent { color } => {
                 ClosureRecord::Transparent { color: self.color(color, 1.0) }
             }
@@ -98,6 +101,7 @@ impl Sanitizer {
             base_color: self.color(record.base_color, 1.0),
             metallic: self.value(record.metallic, UNIT),
             roughness: self.value(record.roughness, UNIT),
+            diffuse_roughness: self.value(record.diffuse_roughness, UNIT),
             ior: self.value(record.ior, IOR),
             alpha: self.value(record.alpha, UNIT),
             specular_ior_level: self.value(record.specular_ior_level, [0.0, 1e3]),

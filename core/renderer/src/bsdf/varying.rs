@@ -5,6 +5,7 @@ use smallvec::SmallVec;
 
 use super::PreparedMaterial;
 use super::normals::Assignment;
+use super::oren_nayar::LEAST_ROUGHNESS;
 use crate::color::Rgb;
 use crate::scene::MaterialProgram;
 use crate::scene::record::{ClosureRecord, Input, InputMut, WeightedClosure};
@@ -21,9 +22,11 @@ pub struct Varying {
 
 impl Varying {
     pub(super) fn new(closures: &[WeightedClosure], program: &MaterialProgram) -> Self {
-        let is_diffuse = |part: &WeightedClosure| matches!(part.closure, ClosureRecord::Diffuse { .. });
+        let is_smooth = |part: &WeightedClosure| matches!(part.closure, ClosureRecord::Diffuse { roughness, .. } if roughness < LEAST_ROUGHNESS);
+        let roughness_varies = program.outputs.iter().any(|output| output.input == Input::Roughness);
         let normals = Assignment::new(closures, program);
-        let is_lambert = normals.registers[..] == [None] && closures.iter().all(is_diffuse);
+        let is_lambert =
+            normals.registers[..] == [None] && !roughness_varies && closures.iter().all(is_smooth);
         Self { closures: closures.into(), program: program.clone(), normals, is_lambert }
     }
 
@@ -45,7 +48,7 @@ impl Varying {
         let closures = self.closures_with(registers);
         let clamped = |c: f32| if c.is_finite() { c.clamp(0.0, 1.0) } else { 0.0 };
         let albedo = closures.iter().map(|part| match part.closure {
-            ClosureRecord::Diffuse { color } => part.weight.map(clamped) * color.map(clamped),
+            ClosureRecord::Diffuse { color, .. } => part.weight.map(clamped) * color.map(clamped),
             _ => Rgb::BLACK,
         });
         albedo.sum::<Rgb>().map(|c| c.min(1.0))
@@ -80,7 +83,7 @@ impl Varying {
             let mut closures = self.closures.clone();
             for output in &self.program.outputs {
                 let value = match output.input {
-                    Input::Roughness | Input::CoatRoughness => roughness,
+                    Input::Roughness | Input::DiffuseRoughness | Input::CoatRoughness => roughness,
                     Input::Ior | Input::CoatIor => 1.5,
                     _ => 0.5,
                 };

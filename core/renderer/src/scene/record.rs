@@ -50,10 +50,13 @@ pub mod visibility {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum ClosureRecord {
-    /// Lambertian reflection.
+    /// Diffuse reflection (Blender's Diffuse BSDF): Lambert's, or that of Oren and Nayar.
     Diffuse {
-        /// Albedo.
+        /// Albedo of a smooth surface, and of facets where it is rough.
         color: Rgb,
+        /// Blender's roughness; 0 is Lambert's.
+        #[serde(default)]
+        roughness: f32,
     },
     /// GGX reflection with constant reflectance, multiple scattering kept (Blender's Glossy BSDF).
     Glossy {
@@ -116,6 +119,7 @@ pub struct PrincipledRecord {
     pub base_color: Rgb,
     pub metallic: f32,
     pub roughness: f32,
+    pub diffuse_roughness: f32,
     pub ior: f32,
     pub alpha: f32,
     pub specular_ior_level: f32,
@@ -139,6 +143,7 @@ impl PrincipledRecord {
             Input::BaseColor => Color(&mut self.base_color),
             Input::Metallic => Number(&mut self.metallic),
             Input::Roughness => Number(&mut self.roughness),
+            Input::DiffuseRoughness => Number(&mut self.diffuse_roughness),
             Input::Ior => Number(&mut self.ior),
             Input::Alpha => Number(&mut self.alpha),
             Input::SpecularIorLevel => Number(&mut self.specular_ior_level),
@@ -164,6 +169,7 @@ impl Default for PrincipledRecord {
             base_color: Rgb::splat(0.8),
             metallic: 0.0,
             roughness: 0.5,
+            diffuse_roughness: 0.0,
             ior: 1.5,
             alpha: 1.0,
             specular_ior_level: 0.5,
@@ -256,6 +262,7 @@ pub enum Input {
     Color,
     Radiance,
     Roughness,
+    DiffuseRoughness,
     Ior,
     BaseColor,
     Metallic,
@@ -284,7 +291,7 @@ impl WeightedClosure {
         }
         match (&mut self.closure, input) {
             (
-                C::Diffuse { color }
+                C::Diffuse { color, .. }
                 | C::Translucent { color }
                 | C::Transparent { color }
                 | C::Glossy { color, .. }
@@ -295,7 +302,8 @@ impl WeightedClosure {
             ) => Some(Color(color)),
             (C::Emission { radiance }, Input::Radiance) => Some(Color(radiance)),
             (
-                C::Glossy { roughness, .. }
+                C::Diffuse { roughness, .. }
+                | C::Glossy { roughness, .. }
                 | C::Glass { roughness, .. }
                 | C::Refraction { roughness, .. }
                 | C::Sheen { roughness, .. },
@@ -321,7 +329,7 @@ impl MaterialRecord {
     /// Blender's surface for objects without a material.
     #[must_use]
     pub fn default_gray() -> Self {
-        let closure = ClosureRecord::Diffuse { color: Rgb::splat(0.8) };
+        let closure = ClosureRecord::Diffuse { color: Rgb::splat(0.8), roughness: 0.0 };
         let closures = vec![WeightedClosure { weight: Rgb::WHITE, closure }];
         Self { name: "Default".into(), closures, program: None, absorption: Rgb::BLACK }
     }

@@ -29,7 +29,11 @@ pub(crate) fn table(closures: Vec<WeightedClosure>) -> MaterialTable {
 }
 
 pub(crate) fn diffuse(color: f32) -> ClosureRecord {
-    ClosureRecord::Diffuse { color: Rgb::splat(color) }
+    rough_diffuse(color, 0.0)
+}
+
+pub(crate) fn rough_diffuse(color: f32, roughness: f32) -> ClosureRecord {
+    ClosureRecord::Diffuse { color: Rgb::splat(color), roughness }
 }
 
 pub(crate) fn glossy(color: f32, roughness: f32) -> ClosureRecord {

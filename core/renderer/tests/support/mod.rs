@@ -129,13 +129,13 @@ pub(crate) fn material(closures: &[ClosureRecord]) -> MaterialRecord {
 
 /// Lambert's reflector.
 pub(crate) fn diffuse(albedo: f32) -> MaterialRecord {
-    material(&[ClosureRecord::Diffuse { color: Rgb::splat(albedo) }])
+    material(&[ClosureRecord::Diffuse { color: Rgb::splat(albedo), roughness: 0.0 }])
 }
 
 /// Lambert's reflector that emits `radiance` from both sides.
 pub(crate) fn emitter(albedo: f32, radiance: f32) -> MaterialRecord {
     material(&[
-        ClosureRecord::Diffuse { color: Rgb::splat(albedo) },
+        ClosureRecord::Diffuse { color: Rgb::splat(albedo), roughness: 0.0 },
         ClosureRecord::Emission { radiance: Rgb::splat(radiance) },
     ])
 }
