@@ -186,10 +186,14 @@ def _falls_off(c: "Compiler", source: Output) -> bool:
 
 
 def _attribute(c: "Compiler", source: Output) -> "Operand | None":
-    b_node = source.b_node
-    if b_node.attribute_type != "GEOMETRY" or not b_node.attribute_name:
+    kind, which = source.b_node.attribute_type, source.b_node.attribute_name
+    # Those of view layers are constants.
+    if kind == "VIEW_LAYER" or not which:
         return None
-    layer = c.attribute(f"attribute:{b_node.attribute_name}")
+    if kind == "GEOMETRY":
+        layer = c.attribute(f"attribute:{which}")
+    else:
+        layer = c.object_value(f"{kind.lower()}:{which}")
     name = source.b_socket.identifier
     if name == "Alpha":
         return c.emit("alpha", of=layer)

@@ -124,6 +124,10 @@ impl Point for HitPoint<'_> {
         Value { v: a + along_b * u + along_c * v, width }
     }
 
+    fn object_attribute(&self, attribute: u32) -> Vec4 {
+        self.object.info.attribute(attribute)
+    }
+
     fn geometry(&self, quantity: Quantity, aside: Aside) -> Value {
         let towards = |normal: Vec3| if self.back { -normal } else { normal };
         let number = Value::number;

@@ -108,6 +108,8 @@ pub enum Instruction {
     Constant { value: [f32; 4] },
     /// A layer of values at the corners of the mesh, interpolated; 0 where the mesh has none.
     Attribute { attribute: u32, aside: Aside },
+    /// A value of the object or lamp; 0 where it has none.
+    ObjectAttribute { attribute: u32 },
     /// Something about the point.
     Geometry { quantity: Quantity, aside: Aside },
     /// `rows` × (x, y, z, 1).
@@ -218,7 +220,10 @@ impl Instruction {
     /// The registers it reads.
     pub(super) fn operands(&self) -> SmallVec<[Register; 8]> {
         match *self {
-            Self::Constant { .. } | Self::Attribute { .. } | Self::Geometry { .. } => smallvec![],
+            Self::Constant { .. }
+            | Self::Attribute { .. }
+            | Self::ObjectAttribute { .. }
+            | Self::Geometry { .. } => smallvec![],
             Self::Transform { vector, .. }
             | Self::Normalize { vector }
             | Self::Panorama { vector, .. }
