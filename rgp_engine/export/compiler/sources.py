@@ -152,6 +152,7 @@ _LIGHT_PATH = {
     "Is Shadow Ray": "is_shadow",
     "Is Diffuse Ray": "is_diffuse",
     "Is Glossy Ray": "is_glossy",
+    "Is Reflection Ray": "is_reflection",
     "Is Transmission Ray": "is_transmission",
 }
 

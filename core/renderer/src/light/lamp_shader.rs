@@ -229,6 +229,7 @@ impl Point for Sight<'_> {
             | Quantity::IsShadow
             | Quantity::IsDiffuse
             | Quantity::IsGlossy
+            | Quantity::IsReflection
             | Quantity::IsTransmission => Value::default(),
         }
     }

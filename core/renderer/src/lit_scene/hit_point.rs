@@ -169,7 +169,8 @@ impl Point for HitPoint<'_> {
             Quantity::IsCamera => number(self.kind(visibility::CAMERA)),
             Quantity::IsShadow => number(self.kind(visibility::SHADOW | visibility::BLOCKERS)),
             Quantity::IsDiffuse => number(self.kind(visibility::DIFFUSE)),
-            Quantity::IsGlossy => number(self.kind(visibility::GLOSSY)),
+            Quantity::IsGlossy => number(f32::from(visibility::is_glossy(self.mask))),
+            Quantity::IsReflection => number(f32::from(visibility::is_reflection(self.mask))),
             Quantity::IsTransmission => number(self.kind(visibility::TRANSMISSION)),
         }
     }

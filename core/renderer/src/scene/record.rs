@@ -38,6 +38,18 @@ pub mod visibility {
     pub const BLOCKERS: u32 = ((1 << BLOCKER_SETS) - 1) << FIRST_BLOCKER;
     const FIRST_BLOCKER: u32 = 7;
 
+    /// True for rays that a glossy surface sent on, by reflection or refraction.
+    #[must_use]
+    pub const fn is_glossy(kinds: u32) -> bool {
+        kinds & GLOSSY != 0 || kinds & (DIFFUSE | TRANSMISSION) == TRANSMISSION
+    }
+
+    /// True for rays that left a surface on the side on which they met it.
+    #[must_use]
+    pub const fn is_reflection(kinds: u32) -> bool {
+        kinds & (DIFFUSE | GLOSSY) != 0 && kinds & TRANSMISSION == 0
+    }
+
     /// The bit of a blocker set.
     #[must_use]
     pub const fn blocker(set: u32) -> u32 {

@@ -80,8 +80,10 @@ pub enum Quantity {
     IsShadow,
     /// 1 for rays that left a diffuse surface.
     IsDiffuse,
-    /// 1 for rays that left a glossy surface.
+    /// 1 for rays that left a glossy surface, to either side.
     IsGlossy,
+    /// 1 for rays that were reflected.
+    IsReflection,
     /// 1 for rays that passed through a surface.
     IsTransmission,
 }
