@@ -10,8 +10,8 @@ Colors = npt.NDArray[np.float32]
 
 
 def scene_linear(colors: Colors, space: str) -> Colors:
-    """Colors (height, width, 3) of a space that Blender knows by name. An image of floats is converted by Blender itself
-    when it is told of which space its file is; a packed one has its file in memory."""
+    """Colors (height, width, 3) of a space that Blender knows by name. Blender converts an image of floats when it is
+    told of which space its file is; a packed one has its file in memory."""
     height, width, _ = colors.shape
     b_image: Any = bpy.data.images.new("Colors", width, height, float_buffer=True, is_data=True)
     try:

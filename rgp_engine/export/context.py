@@ -51,8 +51,8 @@ class ExportContext:
         self.linking = Linking(self.b_depsgraph, self.log)
 
     def attribute_number(self, name: str) -> int:
-        """The core's number of a layer: "uv", "uv:NAME", "color", "attribute:NAME", "generated" or "island"; or of a value
-        of objects: "object:NAME" or "instancer:NAME"."""
+        """The core's number of a layer: "uv", "uv:NAME", "color", "attribute:NAME", "generated" or "island"; or of an
+        object's value: "object:NAME" or "instancer:NAME"."""
         return self.attributes.setdefault(name, len(self.attributes))
 
     def tick(self, doing: str) -> None:

@@ -72,7 +72,7 @@ class _Level:
         self.part_count = sum(getattr(b_geometry, name, None) is not None for name in names)
         """Parts that are shown besides the instances, and counted before them."""
         self._b_geometry = b_geometry
-        self._b_points = None if b_geometry is None else b_geometry.instances_pointcloud()
+        self._b_points: Any = None if b_geometry is None else b_geometry.instances_pointcloud()
         self._values: dict[str, npt.NDArray[Any] | None] = {}
         self._behind: dict[int, _Level] = {}
 
@@ -82,7 +82,9 @@ class _Level:
         try:
             return cls(b_object.evaluated_geometry(), b_object.type)
         except (AttributeError, TypeError):
-            return cls(None)  # before Blender 4.5; objects without geometry, such as those that show a collection
+            return cls(
+                None
+            )  # before Blender 4.5; objects without geometry, such as those that show a collection
 
     @cached_property
     def places(self) -> dict[int, int]:
@@ -119,10 +121,10 @@ class _Level:
         column = self._values[name]
         if column is None:
             return None
-        row = column[place].tolist()
+        row = [float(x) for x in column[place]]
         if len(row) == 1:
             return (row[0], row[0], row[0], 1.0)
-        red, green, blue, alpha = (*row, *(0.0, 0.0, 0.0, 1.0)[len(row) :])
+        red, green, blue, alpha = row + [0.0, 0.0, 0.0, 1.0][len(row) :]
         return red, green, blue, alpha
 
     def _column(self, name: str, kind: type[Any] = np.float32) -> npt.NDArray[Any] | None:

@@ -12,10 +12,10 @@ _OPAQUE = (0.0, 0.0, 0.0, 1.0)
 
 def property_value(b_owner: Any, name: str) -> Rgba | None:
     """The value of a property as a color; None where there is none that is one number, or two to four."""
-    if name in b_owner.keys():
+    if name in b_owner:
         return _rgba(b_owner[name])
     try:
-        b_property = b_owner.path_resolve(name, False)
+        b_property = b_owner.path_resolve(name, False)  # noqa: FBT003 - it takes no keywords
     except ValueError:
         return None
     # One element of an array, such as "location[0]" or "location.x", is none to Blender.

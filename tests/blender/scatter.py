@@ -8,10 +8,12 @@ from tests.blender import build
 
 
 def scatter(b_shown: Any, *, as_instance: bool, joined: bool = False, has_ids: bool = False) -> Any:
-    """An object that shows another four times, at (±0.25, ±0.25, 0): pairs along x, of which there is one on either side
-    along y. Instances of both levels have the attribute `place`, where they lie within their level, and those of their own
-    `inner` and `outer`, which are x and y of that. `as_instance`: the inner ones are of the object, else of its mesh.
-    `joined`: within each outer instance lies a mesh besides. `has_ids`: they have ids, by which Blender names them."""
+    """An object that shows another four times, at (±0.25, ±0.25, 0): pairs along x, one on either side along y.
+
+    Instances of both levels have the attribute `place`, where they lie within their level; those of the pairs have its
+    x as `inner`, the pairs its y as `outer`. `as_instance`: the innermost are of the object, else of its mesh.
+    `joined`: beside each pair lies a mesh. `has_ids`: they have ids, by which Blender names them.
+    """
     b_group = build.nodes_group("Scatter")
     b_in, b_out = b_group.nodes.new("NodeGroupInput"), b_group.nodes.new("NodeGroupOutput")
     b_source = b_group.nodes.new("GeometryNodeObjectInfo")

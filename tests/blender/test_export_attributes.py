@@ -25,7 +25,10 @@ from tests.blender.scatter import scatter
         ('["one"]', (0.5, 0.5, 0.5, 1.0)),
         ("data.auto_texspace", (1.0, 1.0, 1.0, 1.0)),
         *((name, None) for name in ("five", "flags", "text", "group", "location[0]", "location.x", "name")),
-        *((name, None) for name in ("matrix_world", "lock_location", "data", "modifiers", "nothing", "[", "")),
+        *(
+            (name, None)
+            for name in ("matrix_world", "lock_location", "data", "modifiers", "nothing", "[", "")
+        ),
     ],
 )
 def test_a_name_is_a_property_or_a_path(scene, name, expected):
@@ -107,7 +110,9 @@ def test_values_of_the_view_layer_are_constants(scene, export, problems, name, o
 QUARTERS = {(-0.25, -0.25), (-0.25, 0.25), (0.25, -0.25), (0.25, 0.25)}
 
 
-@pytest.mark.skipif(bpy.app.version < (4, 5), reason="Blender 4.2 does not tell of the attributes of instances")
+@pytest.mark.skipif(
+    bpy.app.version < (4, 5), reason="Blender 4.2 does not tell of the attributes of instances"
+)
 @pytest.mark.parametrize("axis", ["inner", "outer"])
 @pytest.mark.parametrize(("joined", "has_ids"), [(False, False), (True, True)])
 @pytest.mark.parametrize("as_instance", [True, False])

@@ -121,13 +121,13 @@ def image_pixels(b_image: Any) -> npt.NDArray[Any] | None:
 def _encode(texels: npt.NDArray[np.float32], is_associated: bool) -> None:
     """Encodes scene linear floats as sRGB, in place; alpha stays multiplied in where it is."""
     alpha = texels[..., 3:]
-    shares = np.where(alpha > 0.0, alpha, 1.0) if is_associated else np.ones_like(alpha)
+    shares: npt.NDArray[np.float32] = np.where(is_associated & (alpha > 0.0), alpha, 1.0).astype(np.float32)
     texels[..., :3] = srgb_encoded(texels[..., :3] / shares) * shares
 
 
 def _converted(texels: npt.NDArray[np.uint8], space: str, associates: bool) -> npt.NDArray[np.float32]:
     """Bytes of another space as scene linear floats, beyond 1 too; the color multiplied by alpha where asked for."""
-    linear = texels / np.float32(255.0)
+    linear = texels.astype(np.float32) / np.float32(255.0)
     linear[..., :3] = scene_linear(linear[..., :3], space)
     if associates:
         linear[..., :3] *= linear[..., 3:]

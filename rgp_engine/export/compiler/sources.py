@@ -191,10 +191,8 @@ def _attribute(c: "Compiler", source: Output) -> "Operand | None":
     # Those of view layers are constants.
     if kind == "VIEW_LAYER" or not which:
         return None
-    if kind == "GEOMETRY":
-        layer = c.attribute(f"attribute:{which}")
-    else:
-        layer = c.object_value(f"{kind.lower()}:{which}")
+    is_layer = kind == "GEOMETRY"
+    layer = c.attribute(f"attribute:{which}") if is_layer else c.object_value(f"{kind.lower()}:{which}")
     name = source.b_socket.identifier
     if name == "Alpha":
         return c.emit("alpha", of=layer)
