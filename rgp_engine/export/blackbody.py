@@ -31,9 +31,13 @@ _COLOR_MATCHING = np.array([
 # fmt: on
 
 
+COOLEST, HOTTEST = 800.0, 12000.0
+"""Temperatures (K) beyond which the color stays the same."""
+
+
 def blackbody(temperature: float) -> Color:
-    """Color of a black body at `temperature` (K), clamped to the node's 800 to 12000 K."""
-    kelvin = min(max(temperature, 800.0), 12000.0)
+    """Color of a black body at a temperature (K)."""
+    kelvin = min(max(temperature, COOLEST), HOTTEST)
     radiance = _WAVELENGTHS**-5 / np.expm1(_C2 / (_WAVELENGTHS * kelvin))
     rgb = _RGB_FROM_XYZ @ (_COLOR_MATCHING @ radiance)
     red, green, blue = np.maximum(rgb / luminance(tuple(rgb)), 0.0).tolist()

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ..report import ProblemLog
+from .geometry_instances import GeometryInstances
 from .linking import Linking
 
 if TYPE_CHECKING:
@@ -34,21 +35,24 @@ class ExportContext:
     """Index in the builder of each image, by its full name; None for those that cannot be read."""
     layers_read: dict[int, frozenset[str]] = field(default_factory=dict)
     """Layers of the mesh that each material reads, by its index in the builder."""
-    asking_objects: set[int] = field(default_factory=set)
-    """Materials that ask about their object, by index in the builder."""
+    asking_objects: dict[int, frozenset[str]] = field(default_factory=dict)
+    """Values of objects that materials ask for, by index in the builder, for those that ask about their object."""
     attributes: dict[str, int] = field(default_factory=dict)
     """The core's number of each layer's name."""
     emits: bool = False
     """True once anything in the scene can give light."""
     linking: Linking = field(init=False)
     """Which lights light what."""
+    geometry_instances: GeometryInstances = field(default_factory=GeometryInstances)
+    """What geometry nodes say of the instances they make."""
     _next_tick: float = 0.0
 
     def __post_init__(self) -> None:
         self.linking = Linking(self.b_depsgraph, self.log)
 
     def attribute_number(self, name: str) -> int:
-        """The core's number of a layer: "uv", "uv:NAME", "color", "attribute:NAME", "generated" or "island"."""
+        """The core's number of a layer: "uv", "uv:NAME", "color", "attribute:NAME", "generated" or "island"; or of an
+        object's value: "object:NAME" or "instancer:NAME"."""
         return self.attributes.setdefault(name, len(self.attributes))
 
     def tick(self, doing: str) -> None:

@@ -10,6 +10,7 @@ from ..report import ProblemLog
 from . import arithmetic
 from .arithmetic import Color, clamp
 from .blackbody import blackbody
+from .named_values import view_layer_value
 from .nodes import Input, Output, origin
 from .texture import texture_average
 
@@ -44,8 +45,9 @@ _MOST_SHADERS = 1000
 class Folder:
     """Folds the inputs of one material's, lamp's or world's nodes."""
 
-    def __init__(self, subject: str, log: ProblemLog | None = None) -> None:
-        """Without `log` nothing is reported."""
+    def __init__(self, subject: str, log: ProblemLog | None = None, b_depsgraph: Any = None) -> None:
+        """Without `log` nothing is reported; without `b_depsgraph` nothing is known of the view layer."""
+        self.b_depsgraph = b_depsgraph
         self._subject = subject
         self._log = ProblemLog() if log is None else log
         self._folded: dict[tuple[Any, ...], Value | None] = {}
@@ -294,6 +296,16 @@ def _map_range(folder: Folder, output: Output) -> Value:
     return clamp(mapped, min(to_min, to_max), max(to_min, to_max)) if b_node.clamp else mapped
 
 
+def _attribute(folder: Folder, output: Output) -> Value:
+    """Of a view layer; others differ from object to object."""
+    b_node = output.b_node
+    if b_node.attribute_type != "VIEW_LAYER" or not b_node.attribute_name or folder.b_depsgraph is None:
+        raise UnfoldableError
+    red, green, blue, alpha = view_layer_value(folder.b_depsgraph, b_node.attribute_name)
+    mean = (red + green + blue) / 3.0
+    return {"Fac": mean, "Alpha": alpha}.get(output.b_socket.identifier, (red, green, blue))
+
+
 def _light_falloff(folder: Folder, output: Output) -> Value:
     if output.b_socket.identifier != "Quadratic":
         raise UnfoldableError
@@ -352,6 +364,7 @@ _NODES: dict[str, Callable[[Folder, Output], Value]] = {
     "RGBTOBW": lambda folder, output: arithmetic.luminance(_triple(folder, output, "Color")),
     "VALTORGB": _color_ramp,
     "CURVE_RGB": _rgb_curves,
+    "ATTRIBUTE": _attribute,
     "LIGHT_FALLOFF": _light_falloff,
     "BLACKBODY": lambda folder, output: blackbody(_number(folder, output, "Temperature")),
 }

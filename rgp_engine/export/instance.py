@@ -52,8 +52,10 @@ def _export_mesh(context: ExportContext, b_instance: Any, moving: Moving | None)
         return
     matrix = matrix_array(b_instance.matrix_world)
     index = context.builder.add_object(b_object.name, mesh, matrix, materials, visibility)
-    if context.asking_objects.intersection(materials):
-        context.builder.set_object_info(index, object_info(b_instance))
+    asked = [context.asking_objects[material] for material in materials if material in context.asking_objects]
+    if asked:
+        names = frozenset[str]().union(*asked)
+        context.builder.set_object_info(index, object_info(context, b_instance, names))
     if context.linking.is_used:
         context.builder.set_object_links(index, context.linking.of_object(owner(b_instance)))
     if moving is not None:

@@ -9,8 +9,7 @@ from .islands import island_numbers
 
 Layer = npt.NDArray[np.float32]
 
-# Property that holds an attribute's values, and how many there are.
-_TYPES = {
+ATTRIBUTE_TYPES = {
     "FLOAT": ("value", 1),
     "INT": ("value", 1),
     "INT8": ("value", 1),
@@ -20,6 +19,7 @@ _TYPES = {
     "FLOAT_COLOR": ("color", 4),
     "BYTE_COLOR": ("color", 4),
 }
+"""Property that holds an attribute's values, and how many there are, by its type."""
 
 
 def corner_layer(b_mesh: Any, name: str, corners: npt.NDArray[np.int32]) -> Layer | None:
@@ -50,9 +50,9 @@ def _uvs(b_mesh: Any, name: str, corners: npt.NDArray[np.int32]) -> Layer | None
 
 def _attribute(b_mesh: Any, name: str, corners: npt.NDArray[np.int32]) -> Layer | None:
     b_attribute = b_mesh.attributes.get(name)
-    if b_attribute is None or b_attribute.data_type not in _TYPES:
+    if b_attribute is None or b_attribute.data_type not in ATTRIBUTE_TYPES:
         return None
-    prop, channels = _TYPES[b_attribute.data_type]
+    prop, channels = ATTRIBUTE_TYPES[b_attribute.data_type]
     values = np.empty((len(b_attribute.data), channels), np.float32)
     b_attribute.data.foreach_get(prop, values.reshape(-1))
     if b_attribute.domain == "CORNER":

@@ -57,7 +57,7 @@ def export_light(context: ExportContext, b_instance: Any) -> None:
         "casts_shadow": b_light.use_shadow,
     }
     if compiler.asks_object:
-        record["info"] = object_info(b_instance)
+        record["info"] = object_info(context, b_instance, compiler.object_values)
     if context.linking.is_used:
         record["links"] = context.linking.of_emitter(owner(b_instance))
     context.builder.add_lamp(record)

@@ -27,7 +27,7 @@ def material_index(context: ExportContext, b_material: Any | None) -> int:
         context.materials[key] = index
         context.layers_read[index] = frozenset(compiler.attributes)
         if compiler.asks_object:
-            context.asking_objects.add(index)
+            context.asking_objects[index] = frozenset(compiler.object_values)
     return context.materials[key]
 
 

@@ -131,6 +131,13 @@ def _of_the_lamp(b_tree: Any, b_emission: Any) -> None:
     nodes.connect(b_tree, b_add, b_emission, "Color")
 
 
+def _attribute(b_tree: Any, b_emission: Any) -> None:
+    """A property of the object."""
+    b_attribute = b_tree.nodes.new("ShaderNodeAttribute")
+    b_attribute.attribute_type, b_attribute.attribute_name = "OBJECT", "color"
+    nodes.connect(b_tree, b_attribute, b_emission, "Color", "Color")
+
+
 def _luminaire(*horizontal: float) -> Callable[[Any, Any], None]:
     """An IES Texture of planes at these angles (degrees) as the strength."""
 
@@ -168,6 +175,8 @@ LAMPS = {
     "sun_blackbody": LampNodes(SUN, _blackbody),
     "sun_image": LampNodes(WIDE_SUN, _image()),
     "object_color": LampNodes(POINT, _of_the_lamp),
+    # In Blender 4.2 lamps had no attributes.
+    **({"object_attribute": LampNodes(POINT, _attribute)} if bpy.app.version >= (4, 5) else {}),
 }
 """By name."""
 

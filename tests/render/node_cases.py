@@ -36,6 +36,14 @@ def _map_range_of_nothing(interpolation: str, data_type: str) -> Make:
     return make
 
 
+def _temperatures(b_tree: Any) -> Any:
+    """From below to above all temperatures that the node knows."""
+    b_image, b_blackbody = (b_tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexImage", "Blackbody"))
+    b_image.image = noise_image()
+    build.connect(b_tree, scaled(b_tree, b_image.outputs[0], 13000.0, 500.0), b_blackbody, "Temperature")
+    return b_blackbody.outputs[0]
+
+
 def _curves_beyond_their_ends(extend: str) -> Make:
     def make(b_tree: Any) -> Any:
         b_image = b_tree.nodes.new("ShaderNodeTexImage")
@@ -77,6 +85,7 @@ def _surface_nodes() -> Iterator[tuple[str, NodeCase]]:
     yield "UV Map", NodeCase(output_of("UVMap"))
     yield "Color Attribute", NodeCase(output_of("VertexColor", layer_name="Paint"))
     yield "Attribute", NodeCase(output_of("Attribute", "Vector", attribute_name="Paint"))
+    yield from _attributes_of_objects()
     for output in ("Is Camera Ray", "Is Shadow Ray", "Is Diffuse Ray"):
         yield f"Light Path/{output}", NodeCase(output_of("LightPath", output))
     yield "Fresnel", NodeCase(output_of("Fresnel"))
@@ -91,6 +100,36 @@ def _surface_nodes() -> Iterator[tuple[str, NodeCase]]:
         make = output_of("NormalMap", inputs={"Strength": 0.8, "Color": IMAGE}, space=space)
         yield f"Normal Map/{space}", NodeCase(make)
         yield f"Normal Map/{space} mirrored", NodeCase(make, is_mirrored=True)
+
+
+def _attributes_of_objects() -> Iterator[tuple[str, NodeCase]]:
+    """Attributes by name of objects, what shows them, and the view layer."""
+
+    def of(kind: str, name: str, output: str = "Color") -> Make:
+        return output_of("Attribute", output, attribute_type=kind, attribute_name=name)
+
+    for output in ("Color", "Fac", "Alpha"):
+        yield f"Attribute/of an object, {output}", NodeCase(of("OBJECT", "Tint", output))
+        yield f"Attribute/of a view layer, {output}", NodeCase(of("VIEW_LAYER", "Tint", output))
+    for name in ("Shade", "location", "data.texspace_size", "nothing"):
+        yield f"Attribute/of an object, {name}", NodeCase(of("OBJECT", name))
+    for name in ("Mood", "render.resolution_x"):
+        yield f"Attribute/of a view layer, {name}", NodeCase(of("VIEW_LAYER", name))
+    # Blender 4.2 does not hand out what geometry nodes say of instances.
+    of_instances = ("place", "inner", "outer") if bpy.app.version >= (4, 5) else ()
+    for name in (*of_instances, "Own", "Tint", "nothing"):
+        for what, how in _SCATTERED.items():
+            case = NodeCase(of("INSTANCER", name), scattered=how)
+            yield f"Attribute/of an instancer of {what}, {name}", case
+    yield "Attribute/of an object without instancer", NodeCase(of("INSTANCER", "Tint"))
+
+
+_SCATTERED = {
+    "objects": {"as_instance": True},
+    "meshes": {"as_instance": False},
+    "meshes beside others": {"as_instance": False, "joined": True, "has_ids": True},
+}
+"""What geometry nodes show."""
 
 
 def _value_nodes() -> Iterator[tuple[str, NodeCase]]:
@@ -148,6 +187,7 @@ def _color_nodes() -> Iterator[tuple[str, NodeCase]]:
     yield "Gamma", NodeCase(output_of("Gamma", inputs={0: IMAGE, 1: 2.2}))
     yield "Invert Color", NodeCase(output_of("Invert", inputs={0: 0.8, 1: IMAGE}))
     yield "Brightness Contrast", NodeCase(output_of("BrightContrast", inputs={0: IMAGE, 1: 0.1, 2: 0.3}))
+    yield "Blackbody", NodeCase(_temperatures)
     yield "RGB to BW", NodeCase(output_of("RGBToBW", inputs={0: IMAGE}))
     # Where hues wrap around there is an edge.
     for mode, channel in (("HSV", 0), ("HSL", 1)):

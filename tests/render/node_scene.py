@@ -11,6 +11,7 @@ import numpy as np
 
 from scenes import common
 from tests.blender import build
+from tests.blender.scatter import scatter
 
 SIZE = 16
 # Largest RMS difference, of the mean: edges of texels and patterns have noise.
@@ -37,6 +38,8 @@ class NodeCase:
     """The plane is in two halves that do not hang together."""
     is_turned: bool = False
     """The camera sees the plane's back."""
+    scattered: Mapping[str, bool] | None = None
+    """Geometry nodes show the plane, small, four times, and this is said of how."""
 
 
 def noise_image(color_space: str = "Non-Color", alpha: bool = False, seed: int = 1) -> Any:
@@ -78,6 +81,11 @@ def node_scene(case: NodeCase) -> bpy.types.Scene:
     b_object.rotation_euler = (0.5 + np.pi if case.is_turned else 0.5, 0.3, 0.2)
     b_object.scale = (-0.9 if case.is_mirrored else 0.9, 1.0, 1.2)
     b_object.color, b_object.pass_index = (0.2, 0.4, 0.6, 0.5), 3
+    b_object["Tint"], b_mesh["Shade"] = (0.3, 0.6, 0.9, 0.7), 0.4
+    scene.view_layers[0]["Tint"], scene["Mood"] = (0.2, 0.5), 2
+    if case.scattered is not None:
+        b_object.hide_render = True
+        scatter(b_object, **case.scattered)["Own"] = (0.1, 0.2, 0.3)
     return scene
 
 

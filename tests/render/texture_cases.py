@@ -97,6 +97,45 @@ def _image_with_alpha(uses_alpha: bool) -> Make:
     return make
 
 
+def _in_space(name: str, kind: str = "Image", *, is_float: bool = False, alpha: bool = False) -> Make:
+    """A picture whose file is of a color space. That of floats is external: packed ones Cycles reads otherwise."""
+
+    def make(b_tree: Any) -> Any:
+        b_image = noise_image("Non-Color", alpha=alpha)
+        if is_float:
+            b_bytes, b_image = b_image, bpy.data.images.new("Floats", 8, 8, float_buffer=True, is_data=True)
+            b_image.pixels = b_bytes.pixels[:]
+            b_image.filepath_raw = str(Path(bpy.app.tempdir) / "rgp_floats.exr")
+            b_image.file_format = "OPEN_EXR"
+            b_image.save()
+            path = b_image.filepath_raw
+            bpy.data.images.remove(b_image)
+            b_image = bpy.data.images.load(path)
+        b_image.colorspace_settings.name = name
+        b_texture = b_tree.nodes.new(f"ShaderNodeTex{kind}")
+        b_texture.image = b_image
+        return b_texture.outputs["Color"]
+
+    return make
+
+
+_SPACES = ("Linear Rec.709", "Linear Rec.2020", "ACEScg", "Filmic sRGB", "AgX Base sRGB", "Display P3")
+"""All of these are known since Blender 4.2."""
+
+
+def _spaces() -> Iterator[tuple[str, NodeCase]]:
+    """Images of every color space."""
+    for name in _SPACES:
+        yield f"Image Texture/{name}", NodeCase(_in_space(name))
+    for name in ("ACEScg", "Filmic sRGB"):
+        yield f"Image Texture/{name} with alpha", NodeCase(_in_space(name, alpha=True))
+        yield f"Environment Texture/{name}", NodeCase(_in_space(name, "Environment"))
+    for name in ("sRGB", "Non-Color", "ACEScg", "Display P3"):
+        for alpha in (False, True):
+            of = "floats with alpha" if alpha else "floats"
+            yield f"Image Texture/{name}, {of}", NodeCase(_in_space(name, is_float=True, alpha=alpha))
+
+
 def _white_noise(dimensions: str) -> Make:
     def make(b_tree: Any) -> Any:
         b_whole = b_tree.nodes.new("ShaderNodeVectorMath")
@@ -216,5 +255,7 @@ def _lattices(inputs: Mapping[Any, Any]) -> Iterator[tuple[str, NodeCase]]:
             yield f"Voronoi Texture/{output} Detail, {how}", NodeCase(make, EDGES)
 
 
-TEXTURES: dict[str, NodeCase] = dict(case for part in (_textures, _noises, _cells) for case in part())
+TEXTURES: dict[str, NodeCase] = dict(
+    case for part in (_textures, _spaces, _noises, _cells) for case in part()
+)
 """By the node's name and what is special."""

@@ -69,6 +69,7 @@ pub const INSTRUCTION: Kind = One("op", INSTRUCTIONS);
 pub const INSTRUCTIONS: &[(&str, Fields)] = &[
     ("constant", &[("value", Numbers(4))]),
     ("attribute", &[("attribute", Whole(3)), ASIDE]),
+    ("object_attribute", &[("attribute", Whole(3))]),
     ("geometry", &[("quantity", Word(words::<Quantity>)), ASIDE]),
     ("transform", &[("vector", Register), ("rows", Rows(3, 4))]),
     ("mapping", &[("vector", Register), ("location", Register), ("rotation", Register), ("scale", Register)]),
@@ -210,7 +211,12 @@ pub const OBJECT_LINKS: Fields =
     &[("receiver_set", Whole(33)), ("blocker_set", Whole(25)), ("light", Record(LINKS))];
 
 /// What materials may ask about an object.
-pub const OBJECT_INFO: Fields = &[("color", Numbers(4)), ("index", Number), ("random", Number)];
+pub const OBJECT_INFO: Fields = &[
+    ("color", Numbers(4)),
+    ("index", Number),
+    ("random", Number),
+    ("attributes", List(3, &[("attribute", Whole(3)), ("value", Numbers(4))])),
+];
 
 const RADIUS: (&str, Kind) = ("radius", Number);
 const SOFT: (&str, Kind) = ("soft_falloff", Flag);

@@ -222,6 +222,24 @@ fn only_rays_that_see_the_world_find_it() {
 }
 
 #[test]
+fn worlds_that_are_black_for_diffuse_surfaces_shine_for_those_who_see_them() {
+    for (quantity, seen, unseen) in [
+        (Quantity::IsCamera, visibility::CAMERA, visibility::GLOSSY),
+        (Quantity::IsGlossy, visibility::TRANSMISSION, visibility::CAMERA),
+        (Quantity::IsReflection, visibility::GLOSSY, visibility::TRANSMISSION),
+    ] {
+        let mut scene = scene(Vec::new(), Vec::new(), 0.0);
+        let instructions = vec![Instruction::Geometry { quantity, aside: Aside::HERE }];
+        let program = Program::new(instructions, 0).expect("no operands");
+        scene.world.program = Some(WorldProgram { program, radiance: 0 });
+        scene.world.visibility = visibility::ALL;
+        let lights = Lights::build(&scene, &[]);
+        assert_eq!(lights.world_seen(Vec3::ZERO, Vec3::Z, seen).0, Rgb::WHITE, "{quantity:?}");
+        assert_eq!(lights.world_seen(Vec3::ZERO, Vec3::Z, unseen).0, Rgb::BLACK, "{quantity:?}");
+    }
+}
+
+#[test]
 fn hostile_panoramas() {
     let black = Lights::build(&panorama(Vec::new(), Interpolation::Linear, |_, _| 0.0), &[]);
     assert!(black.is_empty() && black.world_bytes() == 0);

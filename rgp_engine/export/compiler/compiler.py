@@ -45,13 +45,15 @@ class Compiler(Folder):
     """Of Blender's Object Info."""
 
     def __init__(self, context: "ExportContext", subject: str) -> None:
-        super().__init__(subject, context.log)
+        super().__init__(subject, context.log, context.b_depsgraph)
         self.context = context
         self.instructions: list[dict[str, Any]] = []
         self.attributes: set[str] = set()
         """Layers of the mesh that the program reads."""
         self.asks_object = False
         """True when the program asks about the object."""
+        self.object_values: set[str] = set()
+        """Values of the object that it asks for."""
         self.aside = (0.0, 0.0)
         """Where on the surface things are asked for, while the slope of a bump is compiled: widths of the ray along two
         tangents."""
@@ -59,7 +61,7 @@ class Compiler(Folder):
         """The register that is the shading normal of what has none of its own."""
         self.normals: list[dict[str, Any]] = []
         """The core's NormalRecords: closures with a shading normal of their own."""
-        self._silent = Folder(subject)
+        self._silent = Folder(subject, b_depsgraph=context.b_depsgraph)
         self._known: dict[tuple[Any, ...], Operand] = {}
         self._numbers: dict[str, Register] = {}
         self._varies: dict[tuple[Any, ...], bool] = {}
@@ -223,6 +225,14 @@ class Compiler(Folder):
         """A layer of the mesh."""
         self.attributes.add(name)
         return self.emit("attribute", attribute=self.context.attribute_number(name), aside=self.aside)
+
+    def object_value(self, name: str) -> Register:
+        """A value of the object, "object:NAME", or of its instancer, "instancer:NAME"; the world has none."""
+        if self.of_world:
+            return self.register((0.0, 0.0, 0.0))
+        self.asks_object = True
+        self.object_values.add(name)
+        return self.emit("object_attribute", attribute=self.context.attribute_number(name))
 
     def generated(self) -> Register:
         """Where textures are looked up if nothing else is said."""

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ..color_space import scene_linear, srgb_encoded
 from ..image import pixels_of
 from ..image_file import opened, sequence_file, sequence_frame, tile_files
 
@@ -62,17 +63,22 @@ def _add_texture(c: "Compiler", b_image: Any, name: str) -> int | None:
     if pixels is None:
         return None
     _make_finite(c, name, pixels)
-    index: int = c.context.builder.add_texture(name, pixels, _encoding(c, b_image, name))
+    index: int = c.context.builder.add_texture(name, pixels, _encoding(b_image))
     return index
 
 
-def _encoding(c: "Compiler", b_image: Any, name: str) -> str:
-    space = b_image.colorspace_settings.name
-    if b_image.is_float or space in _LINEAR:
-        return "linear"
-    if space != "sRGB":
-        c.context.log.add(name, f"the color space {space} is not supported yet; sRGB is used instead")
-    return "srgb"
+def _encoding(b_image: Any) -> str:
+    """Blender hands out floats as scene linear; bytes of other spaces than sRGB are made so."""
+    if b_image.is_float:
+        return "srgb" if _filtered_encoded(b_image) else "linear"
+    return "srgb" if b_image.colorspace_settings.name == "sRGB" else "linear"
+
+
+def _filtered_encoded(b_image: Any) -> bool:
+    """True for floats that Cycles reads from the file itself, in sRGB, as from PNG files of 16 bits: between texels it
+    interpolates what they are encoded as."""
+    is_read = b_image.source == "FILE" and b_image.packed_file is None
+    return is_read and b_image.colorspace_settings.name == "sRGB"
 
 
 # The largest number of a half, which is what a pixel too bright for one becomes.
@@ -101,9 +107,31 @@ def image_pixels(b_image: Any) -> npt.NDArray[Any] | None:
     texels = _four_channels(values)
     if b_image.alpha_mode == "NONE":
         texels[..., 3] = 1.0 if b_image.is_float else 255
-    elif not b_image.is_float and _associates(b_image):
+    space = b_image.colorspace_settings.name
+    if b_image.is_float:
+        if _filtered_encoded(b_image):
+            _encode(texels, is_associated=_associates(b_image))
+    elif space != "sRGB" and space not in _LINEAR:
+        texels = _converted(texels, space, associates=_associates(b_image))
+    elif _associates(b_image):
         _associate(texels)
     return texels
+
+
+def _encode(texels: npt.NDArray[np.float32], is_associated: bool) -> None:
+    """Encodes scene linear floats as sRGB, in place; alpha stays multiplied in where it is."""
+    alpha = texels[..., 3:]
+    shares: npt.NDArray[np.float32] = np.where(is_associated & (alpha > 0.0), alpha, 1.0).astype(np.float32)
+    texels[..., :3] = srgb_encoded(texels[..., :3] / shares) * shares
+
+
+def _converted(texels: npt.NDArray[np.uint8], space: str, associates: bool) -> npt.NDArray[np.float32]:
+    """Bytes of another space as scene linear floats, beyond 1 too; the color multiplied by alpha where asked for."""
+    linear = texels.astype(np.float32) / np.float32(255.0)
+    linear[..., :3] = scene_linear(linear[..., :3], space)
+    if associates:
+        linear[..., :3] *= linear[..., 3:]
+    return linear
 
 
 def _associates(b_image: Any) -> bool:

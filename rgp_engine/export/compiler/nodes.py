@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from ..blackbody import COOLEST, HOTTEST, blackbody
 from ..nodes import Output
 from .mapping import mapping
 
@@ -11,6 +12,8 @@ if TYPE_CHECKING:
 
 # Samples of curves and color ramps.
 _TABLE = 257
+# Samples of the color of a black body.
+_TEMPERATURES = 561
 _KINDS = {"FLOAT": "Float", "VECTOR": "Vector", "RGBA": "Color"}
 
 
@@ -159,6 +162,13 @@ def _color_ramp(c: "Compiler", source: Output) -> "Operand | None":
     return c.emit("alpha", of=color) if source.b_socket.identifier == "Alpha" else color
 
 
+def _blackbody(c: "Compiler", source: Output) -> "Operand | None":
+    span = HOTTEST - COOLEST
+    table = [[*blackbody(COOLEST + span * i / (_TEMPERATURES - 1)), 1.0] for i in range(_TEMPERATURES)]
+    factor = c.math("MULTIPLY_ADD", c.input(source, "Temperature"), 1.0 / span, -COOLEST / span)
+    return c.emit("ramp", factor=factor, table=table, stepped=False)
+
+
 def _curves(count: int) -> "Callable[[Compiler, Output], Operand | None]":
     """Curves on `count` channels, and for colors one more before each of them."""
 
@@ -214,6 +224,7 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
     "COMBXYZ": _combine,
     "RGBTOBW": _rgb_to_bw,
     "VALTORGB": _color_ramp,
+    "BLACKBODY": _blackbody,
     "CURVE_RGB": _curves(3),
     "CURVE_VEC": _curves(3),
     "CURVE_FLOAT": _curves(1),

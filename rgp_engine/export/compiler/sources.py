@@ -152,6 +152,7 @@ _LIGHT_PATH = {
     "Is Shadow Ray": "is_shadow",
     "Is Diffuse Ray": "is_diffuse",
     "Is Glossy Ray": "is_glossy",
+    "Is Reflection Ray": "is_reflection",
     "Is Transmission Ray": "is_transmission",
 }
 
@@ -186,10 +187,12 @@ def _falls_off(c: "Compiler", source: Output) -> bool:
 
 
 def _attribute(c: "Compiler", source: Output) -> "Operand | None":
-    b_node = source.b_node
-    if b_node.attribute_type != "GEOMETRY" or not b_node.attribute_name:
+    kind, which = source.b_node.attribute_type, source.b_node.attribute_name
+    # Those of view layers are constants.
+    if kind == "VIEW_LAYER" or not which:
         return None
-    layer = c.attribute(f"attribute:{b_node.attribute_name}")
+    is_layer = kind == "GEOMETRY"
+    layer = c.attribute(f"attribute:{which}") if is_layer else c.object_value(f"{kind.lower()}:{which}")
     name = source.b_socket.identifier
     if name == "Alpha":
         return c.emit("alpha", of=layer)

@@ -33,9 +33,12 @@ NOT_RENDERED: dict[str, str] = {
     "node/Mapping of type Texture, inputs that vary": _TYPICAL,
     "node/Texture Coordinate, Window of a fisheye with a lens polynomial": _TYPICAL,
     "node/Geometry, Pointiness": _TYPICAL,
-    "node/Light Path, lengths (but for Ray Length of lamps) and depths": _TYPICAL,
+    "node/Light Path, singular rays, lengths (but for Ray Length of lamps) and depths": _TYPICAL,
+    "node/Image Texture, packed floats of straight alpha and packed bytes of premultiplied alpha": "as unpacked; "
+    "Cycles shows them otherwise when they are packed",
+    "node/Attribute of instances made by geometry nodes, before Blender 4.5": "properties of objects are used instead, "
+    "with a warning",
     "node/Gabor Texture": _TYPICAL,
-    "node/Blackbody of a temperature that varies": _TYPICAL,
     "node/Vector Displacement": _LEFT_OUT,
 }
 """By feature: what takes its place. The warning names material and node."""

@@ -1,6 +1,7 @@
 //! A world whose light differs from direction to direction. Its radiance is what the program says, wherever a ray leaves the
 //! scene; a table of it decides where surfaces and photons look for light.
 
+use std::f32::consts::PI;
 use std::sync::Arc;
 
 use glam::Vec3;
@@ -22,7 +23,8 @@ const BRIGHT: f32 = 3.0;
 const LOOKS: usize = 2;
 
 /// What lets different surfaces see different worlds.
-const ASKS_KIND: [Quantity; 3] = [Quantity::IsDiffuse, Quantity::IsGlossy, Quantity::IsTransmission];
+const ASKS_KIND: [Quantity; 4] =
+    [Quantity::IsDiffuse, Quantity::IsGlossy, Quantity::IsReflection, Quantity::IsTransmission];
 
 /// The light of a world with a program.
 #[derive(Clone, Debug)]
@@ -39,7 +41,7 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// Looks at a world in all directions. `None` where it has no program, or is black.
+    /// Looks at a world in all directions. `None` where it has no program, or is black for every kind of ray.
     #[must_use]
     pub fn new(world: &World, textures: &Arc<[Texture]>) -> Option<Self> {
         let program = world.program.clone()?;
@@ -53,12 +55,20 @@ impl Environment {
             [one + value * area, two + value * value * area]
         });
         let weights: Vec<f32> = cells.iter().map(|cell| cell.mean()).collect();
-        let table = DirectionTable::new(columns, &weights)?;
-        let sees_as_diffuse = if program.program.asks(&ASKS_KIND) { visibility::DIFFUSE } else { u32::MAX };
+        let asks_kind = program.program.asks(&ASKS_KIND);
+        // Black for diffuse surfaces, it may be none for others and the camera, which meet it by themselves.
+        let (table, sees_as_diffuse) = match DirectionTable::new(columns, &weights) {
+            Some(table) if asks_kind => (table, visibility::DIFFUSE),
+            Some(table) => (table, u32::MAX),
+            None if asks_kind || program.program.asks(&[Quantity::IsCamera]) => {
+                (DirectionTable::new(columns, &vec![1.0; weights.len()])?, 0)
+            }
+            None => return None,
+        };
         Some(Self {
             table,
             fluence,
-            solid_angle: (sums[0] * sums[0] / sums[1]) as f32,
+            solid_angle: if sums[1] > 0.0 { (sums[0] * sums[0] / sums[1]) as f32 } else { 4.0 * PI },
             sampled: world.visibility & sees_as_diffuse & !visibility::CAMERA,
             textures: Arc::clone(textures),
             program,
@@ -183,7 +193,8 @@ impl Point for Sight {
             Quantity::IsCamera => self.is(visibility::CAMERA),
             Quantity::IsShadow => self.is(visibility::SHADOW),
             Quantity::IsDiffuse => self.is(visibility::DIFFUSE),
-            Quantity::IsGlossy => self.is(visibility::GLOSSY),
+            Quantity::IsGlossy => Value::number(f32::from(visibility::is_glossy(self.kind))),
+            Quantity::IsReflection => Value::number(f32::from(visibility::is_reflection(self.kind))),
             Quantity::IsTransmission => self.is(visibility::TRANSMISSION),
             Quantity::Parametric
             | Quantity::Backfacing

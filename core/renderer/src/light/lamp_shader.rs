@@ -196,6 +196,10 @@ impl Point for Sight<'_> {
         Value::default()
     }
 
+    fn object_attribute(&self, attribute: u32) -> Vec4 {
+        self.shader.program.info.attribute(attribute)
+    }
+
     fn geometry(&self, quantity: Quantity, _aside: Aside) -> Value {
         let (program, wo) = (&self.shader.program, -self.look.wi);
         let number = Value::number;
@@ -225,6 +229,7 @@ impl Point for Sight<'_> {
             | Quantity::IsShadow
             | Quantity::IsDiffuse
             | Quantity::IsGlossy
+            | Quantity::IsReflection
             | Quantity::IsTransmission => Value::default(),
         }
     }

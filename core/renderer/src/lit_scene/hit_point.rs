@@ -124,6 +124,10 @@ impl Point for HitPoint<'_> {
         Value { v: a + along_b * u + along_c * v, width }
     }
 
+    fn object_attribute(&self, attribute: u32) -> Vec4 {
+        self.object.info.attribute(attribute)
+    }
+
     fn geometry(&self, quantity: Quantity, aside: Aside) -> Value {
         let towards = |normal: Vec3| if self.back { -normal } else { normal };
         let number = Value::number;
@@ -165,7 +169,8 @@ impl Point for HitPoint<'_> {
             Quantity::IsCamera => number(self.kind(visibility::CAMERA)),
             Quantity::IsShadow => number(self.kind(visibility::SHADOW | visibility::BLOCKERS)),
             Quantity::IsDiffuse => number(self.kind(visibility::DIFFUSE)),
-            Quantity::IsGlossy => number(self.kind(visibility::GLOSSY)),
+            Quantity::IsGlossy => number(f32::from(visibility::is_glossy(self.mask))),
+            Quantity::IsReflection => number(f32::from(visibility::is_reflection(self.mask))),
             Quantity::IsTransmission => number(self.kind(visibility::TRANSMISSION)),
         }
     }

@@ -327,7 +327,7 @@ impl SceneBuilder {
     fn place_lamps(&mut self, space: &SceneSpace) -> Result<Vec<Lamp>, RenderError> {
         let mut lamps = Vec::new();
         for mut record in std::mem::take(&mut self.lamps) {
-            let (program, info) = (record.program.take(), record.info);
+            let (program, info) = (record.program.take(), std::mem::take(&mut record.info));
             let world_from_lamp = DAffine3::from_mat4(matrix(&record.world_from_lamp));
             let Some(mut lamp) = place_lamp(record, space, &mut self.problems) else { continue };
             if let Some(LampProgramRecord { instructions, factor }) = program {

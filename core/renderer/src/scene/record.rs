@@ -1,7 +1,7 @@
 //! Records a host hands over: world space, metres and watts, one per Blender thing. They are plain data; what is wrong
 //! with them is found by [`super::SceneBuilder`].
 
-use glam::DMat4;
+use glam::{DMat4, Vec4};
 use serde::Deserialize;
 
 use crate::color::Rgb;
@@ -38,6 +38,18 @@ pub mod visibility {
     /// Shadow rays of lights that are not blocked by everything: a bit for each set. Never set by the host.
     pub const BLOCKERS: u32 = ((1 << BLOCKER_SETS) - 1) << FIRST_BLOCKER;
     const FIRST_BLOCKER: u32 = 7;
+
+    /// True for rays that a glossy surface sent on, by reflection or refraction.
+    #[must_use]
+    pub const fn is_glossy(kinds: u32) -> bool {
+        kinds & GLOSSY != 0 || kinds & (DIFFUSE | TRANSMISSION) == TRANSMISSION
+    }
+
+    /// True for rays that left a surface on the side on which they met it.
+    #[must_use]
+    pub const fn is_reflection(kinds: u32) -> bool {
+        kinds & (DIFFUSE | GLOSSY) != 0 && kinds & TRANSMISSION == 0
+    }
 
     /// The bit of a blocker set.
     #[must_use]
@@ -336,7 +348,7 @@ impl MaterialRecord {
 }
 
 /// What materials may ask about an object.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ObjectInfo {
     /// Its color in the viewport, with alpha.
@@ -345,11 +357,32 @@ pub struct ObjectInfo {
     pub index: f32,
     /// A random number, 0 to 1.
     pub random: f32,
+    /// Values that it or its instancer have by name.
+    pub attributes: Vec<ObjectAttribute>,
+}
+
+/// A value that an object, or its instancer, has by name.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectAttribute {
+    /// The name's number in programs.
+    pub attribute: u32,
+    /// The value, with alpha.
+    pub value: [f32; 4],
 }
 
 impl Default for ObjectInfo {
     fn default() -> Self {
-        Self { color: [1.0; 4], index: 0.0, random: 0.0 }
+        Self { color: [1.0; 4], index: 0.0, random: 0.0, attributes: Vec::new() }
+    }
+}
+
+impl ObjectInfo {
+    /// The value of a number's name; 0 where there is none.
+    #[must_use]
+    pub fn attribute(&self, number: u32) -> Vec4 {
+        let known = self.attributes.iter().find(|known| known.attribute == number);
+        known.map_or(Vec4::ZERO, |known| Vec4::from_array(known.value))
     }
 }
 

@@ -80,8 +80,10 @@ pub enum Quantity {
     IsShadow,
     /// 1 for rays that left a diffuse surface.
     IsDiffuse,
-    /// 1 for rays that left a glossy surface.
+    /// 1 for rays that left a glossy surface, to either side.
     IsGlossy,
+    /// 1 for rays that were reflected.
+    IsReflection,
     /// 1 for rays that passed through a surface.
     IsTransmission,
 }
@@ -108,6 +110,8 @@ pub enum Instruction {
     Constant { value: [f32; 4] },
     /// A layer of values at the corners of the mesh, interpolated; 0 where the mesh has none.
     Attribute { attribute: u32, aside: Aside },
+    /// A value of the object or lamp; 0 where it has none.
+    ObjectAttribute { attribute: u32 },
     /// Something about the point.
     Geometry { quantity: Quantity, aside: Aside },
     /// `rows` × (x, y, z, 1).
@@ -218,7 +222,10 @@ impl Instruction {
     /// The registers it reads.
     pub(super) fn operands(&self) -> SmallVec<[Register; 8]> {
         match *self {
-            Self::Constant { .. } | Self::Attribute { .. } | Self::Geometry { .. } => smallvec![],
+            Self::Constant { .. }
+            | Self::Attribute { .. }
+            | Self::ObjectAttribute { .. }
+            | Self::Geometry { .. } => smallvec![],
             Self::Transform { vector, .. }
             | Self::Normalize { vector }
             | Self::Panorama { vector, .. }

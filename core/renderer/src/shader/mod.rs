@@ -71,6 +71,11 @@ pub trait Point {
     /// A layer of values at the corners of the mesh, interpolated; 0 where there is none.
     fn attribute(&self, attribute: u32, aside: Aside) -> Value;
 
+    /// A value of the object or lamp; 0 where it has none, as in the world.
+    fn object_attribute(&self, _attribute: u32) -> Vec4 {
+        Vec4::ZERO
+    }
+
     /// Something about the point.
     fn geometry(&self, quantity: Quantity, aside: Aside) -> Value;
 

@@ -60,6 +60,9 @@ fn execute(
     match *instruction {
         Instruction::Constant { value } => Value { v: Vec4::from_array(value), width: 0.0 },
         Instruction::Attribute { attribute, aside } => point.attribute(attribute, aside),
+        Instruction::ObjectAttribute { attribute } => {
+            Value { v: point.object_attribute(attribute), width: 0.0 }
+        }
         Instruction::Geometry { quantity, aside } => point.geometry(quantity, aside),
         Instruction::Image { texture, vector, extension, interpolation, unassociate } => {
             let at = r.value(vector);
