@@ -3,8 +3,7 @@
 use rgp_renderer::scene::record::Input;
 use rgp_renderer::shader::{
     BlendMode, CellHash, Extension, Feature, Fractal, GradientShape, Interpolation, MathFunction, Metric,
-    NormalSpace, Projection, Quantity, VectorFunction, VoronoiOutput, WaveDirection,
-    WaveProfile,
+    NormalSpace, Projection, Quantity, VectorFunction, VoronoiOutput, WaveDirection, WaveProfile,
 };
 
 use crate::records::Kind::{

@@ -25,7 +25,10 @@ pub fn assert_sound(scene: &Scene) {
         let [left, right, bottom, top] = window;
         for at in [[left, bottom], [right, top], [0.5 * (left + right), 0.5 * (bottom + top)]] {
             let Some(sight) = camera.projection.sight(at.into()) else { continue };
-            assert!(sight.direction.is_finite() && sight.direction != glam::DVec3::ZERO, "{camera:?}: {sight:?}");
+            assert!(
+                sight.direction.is_finite() && sight.direction != glam::DVec3::ZERO,
+                "{camera:?}: {sight:?}"
+            );
             assert!(!sight.spread.is_nan(), "{camera:?}: {sight:?}");
         }
     }
