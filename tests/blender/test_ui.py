@@ -185,7 +185,7 @@ def test_every_effect_has_a_switch_and_the_last_render_says_why(scene, monkeypat
     monkeypatch.setattr(report, "_last", None)
     switches = draw(effects.RGP_PT_effects, scene=scene)
     assert switches[:4] == ["Direct Light", "Indirect Diffuse", "Indirect Glossy", "Caustics"]
-    assert len(switches) == 11
+    assert len(switches) == 12
     glass = "glass on 'Bottle'"
     chosen = planned("mirrors_and_glass", glass, switch="off", computed=False)
     report.publish(Outcome(stats={"seconds": {}, "effects": [planned("caustics", glass), chosen]}))
