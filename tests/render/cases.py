@@ -224,11 +224,15 @@ MATERIALS: dict[str, Surface] = {
     "add": joined("AddShader", _diffuse, shader("Emission", Color=GOLD, Strength=0.3)),
 }
 """The ball's surface, by name; each is rendered under a constant world and under a square lamp."""
-if bpy.app.version >= (4, 3):  # Blender 4.2 has no Diffuse Roughness
-    for roughness in (0.3, 1.0):
-        MATERIALS[f"principled_diffuse_rough_{roughness}"] = shader(
-            "BsdfPrincipled", Base_Color=BLUE, Roughness=0.5, Diffuse_Roughness=roughness
-        )
+NEW_MATERIALS = {
+    f"principled_diffuse_rough_{roughness}": shader(
+        "BsdfPrincipled", Base_Color=BLUE, Roughness=0.5, Diffuse_Roughness=roughness
+    )
+    for roughness in (0.3, 1.0)
+}
+"""Those that Blender 4.2 does not have."""
+if bpy.app.version >= (4, 3):
+    MATERIALS |= NEW_MATERIALS
 
 LIGHTS = ("world", "lamp")
 LAMP_CASES = (*LAMPS, "emissive_quad", "world")

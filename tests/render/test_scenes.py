@@ -131,7 +131,8 @@ def test_cornell_reference_is_what_its_figures_say() -> None:
 
 def test_every_case_has_a_precise_reference() -> None:
     references = json.loads((REFERENCES / "cases.json").read_text())["cases"]
-    assert list(references) == list(cases.CASES)
+    new = () if bpy.app.version >= (4, 3) else tuple(f"material/{name}/" for name in cases.NEW_MATERIALS)
+    assert [name for name in references if not name.startswith(new)] == list(cases.CASES)
     for case, reference in references.items():
         for region, allowed in (("whole", 0.001), ("ball", 0.0025)):
             figures = reference[region]
