@@ -128,18 +128,29 @@ def _rough(kind: str, *more: str) -> Callable[[Folder, Output], Closure]:
     def convert(folder: Folder, source: Output) -> Closure:
         numbers = {name.lower(): folder.value(source.input(name)) for name in more}
         roughness = folder.unit(folder.value(source.input("Roughness")))
-        distribution = getattr(source.b_node, "distribution", "MULTI_GGX")
         # Blender 4.1 and before had perfect mirrors as a distribution of their own.
-        if distribution == "SHARP":
+        if source.b_node.distribution == "SHARP":
             roughness = 0.0
-        elif roughness != 0.0 and distribution in ("BECKMANN", "ASHIKHMIN_SHIRLEY"):
-            folder.report_node(
-                source.b_node, f"the distribution {distribution} is not supported yet; GGX is used"
-            )
+        _report_distribution(folder, source, roughness)
         color = folder.color(source.input("Color"))
         return {"kind": kind, "color": color, "roughness": roughness, **numbers}
 
     return convert
+
+
+def _report_distribution(folder: Folder, source: Output, roughness: float | Varying) -> None:
+    """Microfacets are those of GGX, and no light is lost between them."""
+    b_node = source.b_node
+    if roughness == 0.0:
+        return
+    if b_node.distribution in ("BECKMANN", "ASHIKHMIN_SHIRLEY"):
+        folder.report_node(
+            b_node, f"the distribution {b_node.distribution} is not supported yet; GGX is used"
+        )
+    elif b_node.distribution == "GGX" and b_node.type != "BSDF_REFRACTION":
+        folder.report_node(
+            b_node, "the distribution GGX, which loses light, is not supported yet; Multiscatter GGX is used"
+        )
 
 
 def _colored(kind: str) -> Callable[[Folder, Output], Closure]:
@@ -179,18 +190,21 @@ def _principled(folder: Folder, source: Output) -> Closure:
     diffuse_roughness = source.find("Diffuse Roughness")
     if diffuse_roughness is not None:  # not in Blender 4.2
         record["diffuse_roughness"] = folder.value(diffuse_roughness)
+    _report_distribution(folder, source, record["roughness"])
     return record
 
 
 def _metallic(folder: Folder, source: Output) -> Closure:
     if source.b_node.fresnel_type != "F82":
         folder.report_node(source.b_node, "physical conductors are not supported yet; F82 is used")
+    roughness = folder.value(source.input("Roughness"))
+    _report_distribution(folder, source, roughness)
     return {
         "kind": "principled",
         "metallic": 1.0,
         "base_color": folder.color(source.input("Base Color")),
         "specular_tint": folder.color(source.input("Edge Tint")),
-        "roughness": folder.value(source.input("Roughness")),
+        "roughness": roughness,
     }
 
 

@@ -67,15 +67,6 @@ def test_simple_shaders(scene, closures, problems, kind, inputs, expected):
     assert not any("Material" in text for text in problems())
 
 
-@pytest.mark.parametrize(("distribution", "is_reported"), [("BECKMANN", True), ("GGX", False)])
-def test_other_distributions_are_reported(scene, closures, problems, distribution, is_reported):
-    b_material = build.surface("ShaderNodeBsdfRefraction", Roughness=0.1)
-    (b_node,) = (node for node in b_material.node_tree.nodes if node.type == "BSDF_REFRACTION")
-    b_node.distribution = distribution
-    assert only(closures(b_material))["roughness"] == pytest.approx(0.1)
-    assert any("BECKMANN" in text for text in problems()) == is_reported
-
-
 def test_principled(scene, closures):
     b_material = build.surface(
         "ShaderNodeBsdfPrincipled",

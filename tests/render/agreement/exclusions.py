@@ -24,6 +24,8 @@ NOT_RENDERED: dict[str, str] = {
     "shader/Volume Scatter, Principled Volume, Volume Coefficients that scatter or emit": _LEFT_OUT,
     "shader/Volume Absorption that varies": _TYPICAL,
     "world/volumes": _LEFT_OUT,
+    "shader/Principled, Metallic, Glossy and Glass BSDF, distribution GGX": "it loses light; Multiscatter "
+    "GGX, which keeps it, is used instead, with a warning",
     "shader/Principled BSDF, Anisotropic": _LEFT_OUT,
     "shader/Principled BSDF, Thin Film": _LEFT_OUT,
     "shader/Metallic BSDF, Physical Conductor": "not supported yet; F82 is used instead, with a warning",
