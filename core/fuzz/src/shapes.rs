@@ -157,12 +157,14 @@ pub const INSTRUCTIONS: &[(&str, Fields)] = &[
 
 const COLOR: (&str, Kind) = ("color", Numbers(3));
 const ROUGHNESS: (&str, Kind) = ("roughness", Number);
+const MULTISCATTER: (&str, Kind) = ("multiscatter", Flag);
 const IOR: (&str, Kind) = ("ior", Number);
 
 const PRINCIPLED: Fields = &[
     ("base_color", Numbers(3)),
     ("metallic", Number),
     ROUGHNESS,
+    MULTISCATTER,
     ("diffuse_roughness", Number),
     IOR,
     ("alpha", Number),
@@ -183,8 +185,8 @@ const PRINCIPLED: Fields = &[
 /// Closures by name.
 pub const CLOSURES: &[(&str, Fields)] = &[
     ("diffuse", &[COLOR, ROUGHNESS]),
-    ("glossy", &[COLOR, ROUGHNESS]),
-    ("glass", &[COLOR, ROUGHNESS, IOR]),
+    ("glossy", &[COLOR, ROUGHNESS, MULTISCATTER]),
+    ("glass", &[COLOR, ROUGHNESS, IOR, MULTISCATTER]),
     ("refraction", &[COLOR, ROUGHNESS, IOR]),
     ("translucent", &[COLOR]),
     ("sheen", &[COLOR, ROUGHNESS]),

@@ -17,7 +17,7 @@ fn clear(absorption: Rgb) -> MaterialRecord {
 }
 
 fn glass(absorption: f32) -> MaterialRecord {
-    let glass = ClosureRecord::Glass { color: Rgb::WHITE, roughness: 0.0, ior: 1.5 };
+    let glass = ClosureRecord::Glass { color: Rgb::WHITE, roughness: 0.0, ior: 1.5, multiscatter: true };
     MaterialRecord { absorption: Rgb::splat(absorption), ..material(&[glass]) }
 }
 

@@ -143,7 +143,15 @@ fn colored_lobes_match_their_tables() {
         for cos in COSINES {
             for (name, closure) in [
                 ("refraction", ClosureRecord::Refraction { color: Rgb::WHITE, roughness: 0.5, ior: 1.45 }),
-                ("glass", ClosureRecord::Glass { color: Rgb([0.9, 0.5, 0.1]), roughness: 0.7, ior: 1.45 }),
+                (
+                    "glass",
+                    ClosureRecord::Glass {
+                        color: Rgb([0.9, 0.5, 0.1]),
+                        roughness: 0.7,
+                        ior: 1.45,
+                        multiscatter: true,
+                    },
+                ),
                 (
                     "metal",
                     principled(|p| {
@@ -192,12 +200,12 @@ fn cycles() -> Vec<(ClosureRecord, bool, Rings)> {
     let copper = Rgb([0.9, 0.6, 0.2]);
     vec![
         (glossy(0.5, 0.7), true, gray([0.4245, 0.4114, 0.4107])),
-        (ClosureRecord::Glossy { color: Rgb([0.9, 0.5, 0.1]), roughness: 1.0 }, true,
+        (ClosureRecord::Glossy { color: Rgb([0.9, 0.5, 0.1]), roughness: 1.0, multiscatter: true }, true,
             [[0.8122, 0.3386, 0.0565], [0.7894, 0.2958, 0.0450], [0.7690, 0.2584, 0.0349]]),
         (glass(1.0, 0.5, 1.5), false, gray([0.9763, 0.9945, 1.0014])),
         (glass(1.0, 0.8, 1.5), false, gray([0.9547, 0.9953, 0.9963])),
         (glass(1.0, 0.4, 0.7), true, gray([0.9865, 0.9967, 1.0002])),
-        (ClosureRecord::Glass { color: Rgb([0.9, 0.5, 0.1]), roughness: 0.7, ior: 1.45 }, true,
+        (ClosureRecord::Glass { color: Rgb([0.9, 0.5, 0.1]), roughness: 0.7, ior: 1.45, multiscatter: true }, true,
             [[0.8869, 0.4636, 0.0873], [0.8919, 0.4767, 0.0918], [0.8976, 0.4917, 0.0970]]),
         (refraction, true, gray([0.6650, 0.7233, 0.8468])),
         (rough_diffuse(1.0, 1.0), true, gray([1.0, 1.0, 1.0])),

@@ -149,36 +149,44 @@ fn any_closure() -> impl Strategy<Value = ClosureRecord> {
         (any_color(), any_value()).prop_map(|(color, roughness)| ClosureRecord::Diffuse { color, roughness }),
         any_color().prop_map(|color| ClosureRecord::Translucent { color }),
         (any_color(), any_value()).prop_map(|(color, roughness)| ClosureRecord::Sheen { color, roughness }),
-        (any_color(), any_value()).prop_map(|(color, roughness)| ClosureRecord::Glossy { color, roughness }),
-        (any_color(), any_value(), any_value()).prop_map(|(color, roughness, ior)| ClosureRecord::Glass {
-            color,
-            roughness,
-            ior
+        (any_color(), any_value(), any::<bool>()).prop_map(|(color, roughness, multiscatter)| {
+            ClosureRecord::Glossy { color, roughness, multiscatter }
         }),
+        (any_color(), any_value(), any_value(), any::<bool>()).prop_map(
+            |(color, roughness, ior, multiscatter)| ClosureRecord::Glass {
+                color,
+                roughness,
+                ior,
+                multiscatter
+            }
+        ),
         (any_color(), any_value(), any_value())
             .prop_map(|(color, roughness, ior)| ClosureRecord::Refraction { color, roughness, ior }),
-        (prop::array::uniform5(any_color()), prop::array::uniform9(any_value())).prop_map(|(c, v)| {
-            ClosureRecord::Principled(PrincipledRecord {
-                base_color: c[0],
-                specular_tint: c[1],
-                coat_tint: c[2],
-                emission_color: c[3],
-                metallic: v[0],
-                roughness: v[1],
-                diffuse_roughness: v[3],
-                ior: v[2],
-                alpha: v[3],
-                specular_ior_level: v[4],
-                transmission_weight: v[5],
-                coat_weight: v[6],
-                coat_roughness: v[7],
-                coat_ior: v[8],
-                emission_strength: v[0],
-                sheen_weight: v[1],
-                sheen_roughness: v[2],
-                sheen_tint: c[4],
-            })
-        }),
+        (prop::array::uniform5(any_color()), prop::array::uniform9(any_value()), any::<bool>()).prop_map(
+            |(c, v, multiscatter)| {
+                ClosureRecord::Principled(PrincipledRecord {
+                    base_color: c[0],
+                    specular_tint: c[1],
+                    coat_tint: c[2],
+                    emission_color: c[3],
+                    metallic: v[0],
+                    roughness: v[1],
+                    multiscatter,
+                    diffuse_roughness: v[3],
+                    ior: v[2],
+                    alpha: v[3],
+                    specular_ior_level: v[4],
+                    transmission_weight: v[5],
+                    coat_weight: v[6],
+                    coat_roughness: v[7],
+                    coat_ior: v[8],
+                    emission_strength: v[0],
+                    sheen_weight: v[1],
+                    sheen_roughness: v[2],
+                    sheen_tint: c[4],
+                })
+            }
+        ),
     ]
 }
 

@@ -10,7 +10,7 @@ use rgp_renderer::settings::{EstimatorKind, RenderSettings, Switch};
 use support::*;
 
 fn glass() -> MaterialRecord {
-    material(&[ClosureRecord::Glass { color: Rgb::WHITE, roughness: 0.0, ior: 1.5 }])
+    material(&[ClosureRecord::Glass { color: Rgb::WHITE, roughness: 0.0, ior: 1.5, multiscatter: true }])
 }
 
 /// Only caustics, and the lamps that mirrors and glass show.
@@ -91,7 +91,7 @@ fn varnished_tile(roughness: f32) -> Scene {
     let mut builder = SceneBuilder::default();
     let varnish = material(&[
         ClosureRecord::Diffuse { color: Rgb::splat(0.4), roughness: 0.0 },
-        ClosureRecord::Glossy { color: Rgb::splat(0.3), roughness: 0.45 },
+        ClosureRecord::Glossy { color: Rgb::splat(0.3), roughness: 0.45, multiscatter: true },
     ]);
     place(&mut builder, floor(0.2, 0.0), &[varnish]);
     place(&mut builder, floor(1.0, 1.0), &[glossy(0.9, roughness)]);

@@ -21,7 +21,7 @@ fn room(ball: ClosureRecord) -> Room {
 }
 
 fn glass() -> ClosureRecord {
-    ClosureRecord::Glass { color: Rgb::WHITE, roughness: 0.0, ior: 1.5 }
+    ClosureRecord::Glass { color: Rgb::WHITE, roughness: 0.0, ior: 1.5, multiscatter: true }
 }
 
 /// Everything there is: a diffuse room, a glass ball, a glossy and a mirror-like one, a panel that lets light through, a
@@ -143,7 +143,11 @@ fn lights_are_a_partition() {
 fn on_changes_nothing_where_nothing_calls_for_it() {
     let scenes = [
         ("diffuse", room(ClosureRecord::Diffuse { color: Rgb::splat(0.5), roughness: 0.0 }).builder()),
-        ("glossy", room(ClosureRecord::Glossy { color: Rgb::splat(0.8), roughness: 0.7 }).builder()),
+        (
+            "glossy",
+            room(ClosureRecord::Glossy { color: Rgb::splat(0.8), roughness: 0.7, multiscatter: true })
+                .builder(),
+        ),
         ("glass", room(glass()).builder()),
         ("one mirror in the world", {
             let mut builder = Room { lamps: 0, pixels: 16, ..Room::default() }.equipment();

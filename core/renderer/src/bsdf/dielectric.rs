@@ -1,6 +1,6 @@
 //! Lobes of a dielectric boundary: reflection and refraction (Glass BSDF), or refraction alone (Refraction BSDF).
 
-use super::energy_table::{self, compensation};
+use super::energy_table;
 use super::lobe::{Fresnel, Lobe, Shape, transmission_class};
 use super::reflection::Roughness;
 use super::{LobeList, LobeSet, fresnel};
@@ -36,7 +36,7 @@ impl Glass {
     /// Adds a reflection (`slot`) and a transmission (`slot` + 1).
     pub(super) fn push(self, lobes: &mut LobeList, weight: Rgb, entering: bool, cos: f32, slot: u8) {
         let eta = if entering { self.ior } else { 1.0 / self.ior };
-        let Roughness { roughness, alpha } = self.rough;
+        let Roughness { roughness, alpha, .. } = self.rough;
         let class = transmission_class(alpha, eta);
         let total = energy_table::reflection(roughness, cos).total;
         let (rise, through, gain) = if class == LobeSet::DELTA {
@@ -47,7 +47,7 @@ impl Glass {
             let plain = fresnel::f0_from_ior(eta);
             let refracted = (1.0 - plain) * (table.through + table.stray);
             let scaled = plain * (total - table.rise) + table.rise + refracted;
-            (table.rise, table.through, compensation(scaled, table.mean, self.transmission_tint))
+            (table.rise, table.through, self.rough.gain(scaled, table.mean, self.transmission_tint))
         };
         let fresnel = Fresnel::Dielectric { f0: self.f0, eta };
         let reflected = weight * gain * self.reflection_tint;

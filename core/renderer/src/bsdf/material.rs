@@ -155,14 +155,16 @@ impl PreparedMaterial {
                 (weight, PreparedClosure::Diffuse { color, roughness })
             }
             ClosureRecord::Translucent { color } => (weight * color, PreparedClosure::Translucent),
-            ClosureRecord::Glossy { color, roughness } => {
-                (weight, PreparedClosure::Glossy { color, rough: Roughness::new(roughness) })
+            ClosureRecord::Glossy { color, roughness, multiscatter } => {
+                (weight, PreparedClosure::Glossy { color, rough: Roughness::new(roughness, multiscatter) })
             }
-            ClosureRecord::Glass { color, roughness, ior } => {
-                (weight, PreparedClosure::Glass(Glass::plain(color, Roughness::new(roughness), ior)))
+            ClosureRecord::Glass { color, roughness, ior, multiscatter } => {
+                let rough = Roughness::new(roughness, multiscatter);
+                (weight, PreparedClosure::Glass(Glass::plain(color, rough, ior)))
             }
             ClosureRecord::Refraction { color, roughness, ior } => {
-                (weight * color, PreparedClosure::Refraction { rough: Roughness::new(roughness), ior })
+                let rough = Roughness::new(roughness, false);
+                (weight * color, PreparedClosure::Refraction { rough, ior })
             }
             ClosureRecord::Sheen { color, roughness } => {
                 (weight * color, PreparedClosure::Sheen { roughness })

@@ -66,7 +66,7 @@ struct Coat {
 impl Principled {
     /// From sockets already within their ranges.
     pub(super) fn new(record: &PrincipledRecord) -> Self {
-        let rough = Roughness::new(record.roughness);
+        let rough = Roughness::new(record.roughness, record.multiscatter);
         let ior = record.ior;
         let plain_f0 = fresnel::f0_from_ior(ior);
         let (mut f0, mut eta) = (plain_f0, ior);
@@ -81,7 +81,8 @@ impl Principled {
         let coat_layer = Layer {
             eta: record.coat_ior,
             f0: Rgb::splat(fresnel::f0_from_ior(record.coat_ior)),
-            rough: Roughness::new(record.coat_roughness),
+            // The distribution is that of what lies below: coats lose nothing.
+            rough: Roughness::new(record.coat_roughness, true),
         };
         Self {
             emission: record.emission_color * record.emission_strength,

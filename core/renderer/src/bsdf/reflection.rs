@@ -1,12 +1,12 @@
 //! Lobes of GGX reflection: constant reflectance (Glossy BSDF), metal, and a dielectric layer over something else.
 
-use super::energy_table::{self, compensation};
+use super::energy_table;
 use super::fresnel;
 use super::lobe::{self, Fresnel, Lobe, Shape};
 use super::{LobeList, LobeSet};
 use crate::color::Rgb;
 
-/// Microfacet roughness: Blender's, and the GGX alpha it stands for. Both are zero where the lobe is a delta, so that
+/// Microfacets: Blender's roughness, and the GGX alpha it stands for. Both are zero where the lobe is a delta, so that
 /// tables and class agree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Roughness {
@@ -14,17 +14,22 @@ pub(super) struct Roughness {
     pub(super) roughness: f32,
     /// GGX alpha.
     pub(super) alpha: f32,
+    /// Whether light that bounces between microfacets leaves in the end (Blender's Multiscatter GGX) or is lost (GGX).
+    multiscatter: bool,
 }
 
 impl Roughness {
     /// From Blender's roughness, 0 to 1.
-    pub(super) fn new(roughness: f32) -> Self {
+    pub(super) fn new(roughness: f32, multiscatter: bool) -> Self {
         let alpha = roughness * roughness;
-        if alpha <= lobe::DELTA_ALPHA {
-            Self { roughness: 0.0, alpha: 0.0 }
-        } else {
-            Self { roughness, alpha }
-        }
+        let is_delta = alpha <= lobe::DELTA_ALPHA;
+        let (roughness, alpha) = if is_delta { (0.0, 0.0) } else { (roughness, alpha) };
+        Self { roughness, alpha, multiscatter }
+    }
+
+    /// Factor on the single-scattering albedo `total`, see [`energy_table::compensation`].
+    pub(super) fn gain(self, total: f32, mean: f32, fss: Rgb) -> Rgb {
+        if self.multiscatter { energy_table::compensation(total, mean, fss) } else { Rgb::WHITE }
     }
 
     /// Class of a reflection.
@@ -43,7 +48,7 @@ pub(super) fn push_constant(
     slot: u8,
 ) {
     let table = energy_table::reflection(rough.roughness, cos);
-    let gain = compensation(table.total, table.mean, color);
+    let gain = rough.gain(table.total, table.mean, color);
     let weight = weight * color * gain;
     lobes.push(Lobe {
         shape: Shape::Reflection { alpha: rough.alpha },
@@ -72,7 +77,7 @@ impl Metal {
     pub(super) fn push(self, lobes: &mut LobeList, weight: Rgb, rough: Roughness, cos: f32, slot: u8) {
         let table = energy_table::reflection(rough.roughness, cos);
         let fss = fresnel::metal_mean(self.f0, self.dip);
-        let gain = compensation(table.total, table.mean, fss);
+        let gain = rough.gain(table.total, table.mean, fss);
         let weight = weight * gain;
         let schlick = self.f0 * (table.total - table.schlick) + Rgb::splat(table.schlick);
         let single = (schlick - self.dip * table.dent).map(|c| c.max(0.0));
@@ -114,7 +119,7 @@ impl Layer {
             _ => (table.rise, table.layer),
         };
         let fss = f0.lerp(Rgb::WHITE, mean_rise(eta));
-        let gain = compensation(reflection.total, reflection.mean, fss);
+        let gain = rough.gain(reflection.total, reflection.mean, fss);
         let dimmed = gain * share;
         let reflected = dimmed * (f0 * (reflection.total - rise) + Rgb::splat(rise));
         lobes.push(Lobe {

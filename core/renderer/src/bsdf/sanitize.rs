@@ -77,14 +77,16 @@ impl Sanitizer {
             ClosureRecord::Emission { radiance } => {
                 ClosureRecord::Emission { radiance: self.color(radiance, BRIGHTEST) }
             }
-            ClosureRecord::Glossy { color, roughness } => ClosureRecord::Glossy {
+            ClosureRecord::Glossy { color, roughness, multiscatter } => ClosureRecord::Glossy {
                 color: self.color(color, 1.0),
                 roughness: self.value(roughness, UNIT),
+                multiscatter,
             },
-            ClosureRecord::Glass { color, roughness, ior } => ClosureRecord::Glass {
+            ClosureRecord::Glass { color, roughness, ior, multiscatter } => ClosureRecord::Glass {
                 color: self.color(color, 1.0),
                 roughness: self.value(roughness, UNIT),
                 ior: self.value(ior, IOR),
+                multiscatter,
             },
             ClosureRecord::Refraction { color, roughness, ior } => ClosureRecord::Refraction {
                 color: self.color(color, 1.0),
@@ -101,6 +103,7 @@ impl Sanitizer {
             base_color: self.color(record.base_color, 1.0),
             metallic: self.value(record.metallic, UNIT),
             roughness: self.value(record.roughness, UNIT),
+            multiscatter: record.multiscatter,
             diffuse_roughness: self.value(record.diffuse_roughness, UNIT),
             ior: self.value(record.ior, IOR),
             alpha: self.value(record.alpha, UNIT),

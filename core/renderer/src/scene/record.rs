@@ -70,12 +70,15 @@ pub enum ClosureRecord {
         #[serde(default)]
         roughness: f32,
     },
-    /// GGX reflection with constant reflectance, multiple scattering kept (Blender's Glossy BSDF).
+    /// GGX reflection with constant reflectance (Blender's Glossy BSDF).
     Glossy {
         /// Reflectance.
         color: Rgb,
         /// Blender's roughness, the square root of GGX alpha.
         roughness: f32,
+        /// Whether light that bounces between microfacets leaves in the end (Blender's Multiscatter GGX) or is lost (GGX).
+        #[serde(default = "is_multiscatter")]
+        multiscatter: bool,
     },
     /// Reflection and refraction by Fresnel's equations (Blender's Glass BSDF).
     Glass {
@@ -85,6 +88,9 @@ pub enum ClosureRecord {
         roughness: f32,
         /// Index of refraction, inside over outside.
         ior: f32,
+        /// As of [`ClosureRecord::Glossy`].
+        #[serde(default = "is_multiscatter")]
+        multiscatter: bool,
     },
     /// Refraction alone (Blender's Refraction BSDF).
     Refraction {
@@ -123,6 +129,11 @@ pub enum ClosureRecord {
     Principled(PrincipledRecord),
 }
 
+/// Blender's default distribution of microfacets is Multiscatter GGX.
+const fn is_multiscatter() -> bool {
+    true
+}
+
 /// Sockets of Blender's Principled BSDF, their meaning and ranges Blender's own.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -131,6 +142,7 @@ pub struct PrincipledRecord {
     pub base_color: Rgb,
     pub metallic: f32,
     pub roughness: f32,
+    pub multiscatter: bool,
     pub diffuse_roughness: f32,
     pub ior: f32,
     pub alpha: f32,
@@ -181,6 +193,7 @@ impl Default for PrincipledRecord {
             base_color: Rgb::splat(0.8),
             metallic: 0.0,
             roughness: 0.5,
+            multiscatter: true,
             diffuse_roughness: 0.0,
             ior: 1.5,
             alpha: 1.0,

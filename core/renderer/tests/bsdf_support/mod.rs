@@ -37,11 +37,11 @@ pub(crate) fn rough_diffuse(color: f32, roughness: f32) -> ClosureRecord {
 }
 
 pub(crate) fn glossy(color: f32, roughness: f32) -> ClosureRecord {
-    ClosureRecord::Glossy { color: Rgb::splat(color), roughness }
+    ClosureRecord::Glossy { color: Rgb::splat(color), roughness, multiscatter: true }
 }
 
 pub(crate) fn glass(color: f32, roughness: f32, ior: f32) -> ClosureRecord {
-    ClosureRecord::Glass { color: Rgb::splat(color), roughness, ior }
+    ClosureRecord::Glass { color: Rgb::splat(color), roughness, ior, multiscatter: true }
 }
 
 pub(crate) fn translucent(color: f32) -> ClosureRecord {

@@ -142,7 +142,7 @@ pub(crate) fn emitter(albedo: f32, radiance: f32) -> MaterialRecord {
 
 /// A GGX reflector.
 pub(crate) fn glossy(color: f32, roughness: f32) -> MaterialRecord {
-    material(&[ClosureRecord::Glossy { color: Rgb::splat(color), roughness }])
+    material(&[ClosureRecord::Glossy { color: Rgb::splat(color), roughness, multiscatter: true }])
 }
 
 /// A lamp at `position` that shines down.
