@@ -131,26 +131,23 @@ def _rough(kind: str, *more: str) -> Callable[[Folder, Output], Closure]:
         # Blender 4.1 and before had perfect mirrors as a distribution of their own.
         if source.b_node.distribution == "SHARP":
             roughness = 0.0
-        _report_distribution(folder, source, roughness)
         color = folder.color(source.input("Color"))
-        return {"kind": kind, "color": color, "roughness": roughness, **numbers}
+        record = {"kind": kind, "color": color, "roughness": roughness, **numbers}
+        multiscatter = _multiscatter(folder, source, roughness)
+        # Refraction always loses what bounces between microfacets.
+        return record if kind == "refraction" else {**record, "multiscatter": multiscatter}
 
     return convert
 
 
-def _report_distribution(folder: Folder, source: Output, roughness: float | Varying) -> None:
-    """Microfacets are those of GGX, and no light is lost between them."""
+def _multiscatter(folder: Folder, source: Output, roughness: float | Varying) -> bool:
+    """Whether light that bounces between microfacets leaves in the end. Their distribution is always GGX."""
     b_node = source.b_node
-    if roughness == 0.0:
-        return
-    if b_node.distribution in ("BECKMANN", "ASHIKHMIN_SHIRLEY"):
+    if b_node.distribution in ("BECKMANN", "ASHIKHMIN_SHIRLEY") and roughness != 0.0:
         folder.report_node(
             b_node, f"the distribution {b_node.distribution} is not supported yet; GGX is used"
         )
-    elif b_node.distribution == "GGX" and b_node.type != "BSDF_REFRACTION":
-        folder.report_node(
-            b_node, "the distribution GGX, which loses light, is not supported yet; Multiscatter GGX is used"
-        )
+    return bool(b_node.distribution == "MULTI_GGX")
 
 
 def _colored(kind: str) -> Callable[[Folder, Output], Closure]:
@@ -190,7 +187,7 @@ def _principled(folder: Folder, source: Output) -> Closure:
     diffuse_roughness = source.find("Diffuse Roughness")
     if diffuse_roughness is not None:  # not in Blender 4.2
         record["diffuse_roughness"] = folder.value(diffuse_roughness)
-    _report_distribution(folder, source, record["roughness"])
+    record["multiscatter"] = _multiscatter(folder, source, record["roughness"])
     return record
 
 
@@ -198,13 +195,13 @@ def _metallic(folder: Folder, source: Output) -> Closure:
     if source.b_node.fresnel_type != "F82":
         folder.report_node(source.b_node, "physical conductors are not supported yet; F82 is used")
     roughness = folder.value(source.input("Roughness"))
-    _report_distribution(folder, source, roughness)
     return {
         "kind": "principled",
         "metallic": 1.0,
         "base_color": folder.color(source.input("Base Color")),
         "specular_tint": folder.color(source.input("Edge Tint")),
         "roughness": roughness,
+        "multiscatter": _multiscatter(folder, source, roughness),
     }
 
 

@@ -41,12 +41,12 @@ def approx(closure):
         (
             "BsdfAnisotropic",
             {"Color": (0.1, 0.2, 0.3), "Roughness": 0.4},
-            {"kind": "glossy", "color": [0.1, 0.2, 0.3], "roughness": 0.4},
+            {"kind": "glossy", "color": [0.1, 0.2, 0.3], "roughness": 0.4, "multiscatter": True},
         ),
         (
             "BsdfGlass",
             {"Color": (1.0, 0.9, 0.8), "Roughness": 0.0, "IOR": 1.33},
-            {"kind": "glass", "color": [1.0, 0.9, 0.8], "roughness": 0.0, "ior": 1.33},
+            {"kind": "glass", "color": [1.0, 0.9, 0.8], "roughness": 0.0, "ior": 1.33, "multiscatter": True},
         ),
         (
             "BsdfRefraction",
@@ -94,6 +94,7 @@ def test_principled(scene, closures):
             "base_color": [0.7, 0.6, 0.5],
             "metallic": 0.25,
             "roughness": 0.35,
+            "multiscatter": True,
             "ior": 1.4,
             "alpha": 0.9,
             "specular_ior_level": 0.6,

@@ -103,6 +103,34 @@ fn convex_body_in_a_uniform_world() {
     }
 }
 
+/// An edge through pixels that have more camera samples than gather rays: rays come from all parts of a pixel.
+#[test]
+fn edge_in_a_uniform_world() {
+    const WIDTH: u32 = 64;
+    let half_floor = |x: [f32; 2]| {
+        quad(
+            [(0, -9.0), (1, -9.0), (1, 9.0), (0, 9.0)]
+                .map(|(side, y): (usize, f32)| Vec3::new(x[side], y, 0.0)),
+        )
+    };
+    // The picture is two metres wide; three tenths of a column of pixels are black.
+    let edge = 2.0 / WIDTH as f32 * 0.3;
+    let mut builder = SceneBuilder::default();
+    place(&mut builder, half_floor([-9.0, edge]), &[diffuse(0.0)]);
+    place(&mut builder, half_floor([edge, 9.0]), &[diffuse(1.0)]);
+    builder.set_world(world(0.5));
+    builder.set_camera(parallel_camera(DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO, 1.0, WIDTH));
+    let scene = builder.finish().expect("a scene with a camera");
+    for (rays, samples) in [(1, 64), (4, 256), (16, 64), (64, 64)] {
+        let mut settings = settings(PHOTONS, RESOLUTION, rays);
+        settings.gather.camera_samples = samples;
+        let picture = render(&scene, &settings).radiance();
+        let column: Vec<f64> = picture.chunks(WIDTH as usize).map(|row| row[WIDTH as usize / 2]).collect();
+        // Of independent rays the mean has a standard error of 0.08 / √rays.
+        assert_close(mean(&column), 0.5 * 0.7, 0.25 / f64::from(rays).sqrt());
+    }
+}
+
 /// A box without a lid, of albedo 1, seen from above with its surroundings.
 #[test]
 fn hollow_body_of_albedo_one_cannot_be_seen() {

@@ -32,6 +32,12 @@ impl Roughness {
         if self.multiscatter { energy_table::compensation(total, mean, fss) } else { Rgb::WHITE }
     }
 
+    /// [`Roughness::gain`] times this is what a white surface hides from what lies below: whatever bounces between
+    /// microfacets never gets there, also where it is lost.
+    fn hiding(self, total: f32) -> f32 {
+        if self.multiscatter { total } else { 1.0 }
+    }
+
     /// Class of a reflection.
     pub(super) fn reflection_class(self) -> LobeSet {
         lobe::reflection_class(self.alpha)
@@ -134,7 +140,7 @@ impl Layer {
         });
         // Cycles takes the first, an estimate. It makes light from nothing where it is the smaller: by 1.5 % at most, at
         // cosines below 0.05, but by half for indices below 1.
-        let estimate = dimmed * f0.lerp(Rgb::WHITE, layer) * reflection.total;
+        let estimate = dimmed * f0.lerp(Rgb::WHITE, layer) * rough.hiding(reflection.total);
         (1.0 - estimate.max_channel().max(reflected.max_channel())).max(0.0)
     }
 }

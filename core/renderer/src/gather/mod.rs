@@ -78,7 +78,6 @@ pub struct Gatherer<'a, E> {
     sampling: GatherSampling,
     /// The lens that camera rays pass through, and where.
     lens: Option<&'a Lens>,
-    camera_set: StratifiedSet,
     gather_set: StratifiedSet,
     /// Of a pixel: light samples against gather rays.
     shares: Shares,
@@ -158,7 +157,6 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
     ) -> Self {
         let gather = &settings.gather;
         let seed = settings.render.seed;
-        let set = |count: u32, salt: u64| StratifiedSet::new(count, hash(u64::from(seed), salt) as u32);
         let plain = lit.materials.iter().map(|material| {
             let albedo = material.constant_lambert().filter(|_| material.emission().is_black());
             albedo.map(|albedo| albedo * std::f32::consts::FRAC_1_PI)
@@ -180,8 +178,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             max_depth: gather.max_depth.max(E::LEAST_DEPTH),
             sampling: gather.sampling,
             lens,
-            camera_set: set(gather.camera_samples, 1),
-            gather_set: set(gather.rays, 3),
+            gather_set: StratifiedSet::new(gather.rays, hash(u64::from(seed), 3) as u32),
             shares: Shares {
                 light: (gather.camera_samples * gather.light_samples) as f32,
                 bsdf: gather.rays as f32,
