@@ -38,6 +38,70 @@ fn white_glossy_returns_everything() {
     }
 }
 
+/// The same closure where light that bounces between microfacets is lost.
+fn lossy(mut closure: ClosureRecord) -> ClosureRecord {
+    match &mut closure {
+        ClosureRecord::Glossy { multiscatter, .. } | ClosureRecord::Glass { multiscatter, .. } => {
+            *multiscatter = false;
+        }
+        ClosureRecord::Principled(record) => record.multiscatter = false,
+        _ => unreachable!(),
+    }
+    closure
+}
+
+/// Head on and of GGX alpha 1: D = 1/π, masked by 2 cos / (1 + cos), so ∫ D G / (4 cos) cos dω = ∫₀¹ c / (1 + c) dc.
+#[test]
+fn single_scattering_of_the_roughest_surface_is_the_closed_form() {
+    let exact = 1.0 - std::f64::consts::LN_2;
+    for (what, closure) in [
+        ("glossy", glossy(1.0, 1.0)),
+        (
+            "metal",
+            principled(|p| {
+                (p.base_color, p.metallic, p.roughness) = (Rgb::WHITE, 1.0, 1.0);
+            }),
+        ),
+    ] {
+        let found = albedo(&prepared(lossy(closure)), 1.0, true, OUTSIDE, what);
+        assert!((found - exact).abs() < 0.002, "{what}: {found} against {exact}");
+    }
+}
+
+/// But for grazing directions. Multiscatter GGX returns all of it ([`white_glossy_returns_everything`]).
+#[test]
+fn single_scattering_returns_less_the_rougher_the_surface() {
+    for make in [|roughness| glossy(1.0, roughness), |roughness| glass(1.0, roughness, 1.5)] {
+        for cos in [0.6, 1.0] {
+            let mut before = 1.0 + 1e-6;
+            for roughness in ROUGHNESSES {
+                let what = format!("roughness {roughness}, cosine {cos}");
+                let found = albedo(&prepared(lossy(make(roughness))), cos, true, OUTSIDE, &what);
+                assert!(found < before + 1e-3, "{what}: {found} after {before}");
+                before = found;
+            }
+            assert!(before < 0.97, "cosine {cos}: {before} at roughness 1");
+        }
+    }
+}
+
+/// What bounces between the facets of a layer never reaches what lies below: the base gets about the same
+/// with either distribution.
+#[test]
+fn light_lost_in_a_layer_does_not_light_what_is_below() {
+    for roughness in ROUGHNESSES {
+        for cos in [0.3, 0.6, 1.0] {
+            let record = principled(|p| (p.base_color, p.roughness) = (Rgb::WHITE, roughness));
+            let [kept, lost] = [record.clone(), lossy(record)]
+                .map(|closure| seen(&prepared(closure), cos, true).albedo(LobeSet::DIFFUSE).mean());
+            assert!(
+                lost <= kept + 1e-4 && lost > kept - 0.03,
+                "roughness {roughness}, cosine {cos}: {lost} of {kept}"
+            );
+        }
+    }
+}
+
 #[test]
 fn white_glass_returns_everything_from_outside_and_never_more() {
     for ior in [1.1, 1.5, 2.4] {
