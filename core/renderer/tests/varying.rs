@@ -53,7 +53,13 @@ fn a_program_of_constants_changes_no_lambert_surface() {
 
 #[test]
 fn a_program_of_constants_changes_no_glossy_surface() {
-    let typical = ClosureRecord::Glossy { color: Rgb::splat(0.1), roughness: 0.2, multiscatter: true };
+    let typical = ClosureRecord::Glossy {
+        color: Rgb::splat(0.1),
+        roughness: 0.2,
+        anisotropy: 0.0,
+        rotation: 0.0,
+        multiscatter: true,
+    };
     let varying = programmed(typical, &[(Input::Color, 0.8), (Input::Roughness, 0.7)]);
     same_picture(glossy(0.8, 0.7), varying);
 }

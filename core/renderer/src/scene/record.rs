@@ -76,6 +76,12 @@ pub enum ClosureRecord {
         color: Rgb,
         /// Blender's roughness, the square root of GGX alpha.
         roughness: f32,
+        /// Blender's anisotropy, -1 to 1: alpha is larger along the tangent below 0, across it above.
+        #[serde(default)]
+        anisotropy: f32,
+        /// Turns of the tangent about the normal.
+        #[serde(default)]
+        rotation: f32,
         /// Whether light that bounces between microfacets leaves in the end (Blender's Multiscatter GGX) or is lost (GGX).
         #[serde(default = "is_multiscatter")]
         multiscatter: bool,
@@ -143,6 +149,8 @@ pub struct PrincipledRecord {
     pub metallic: f32,
     pub roughness: f32,
     pub multiscatter: bool,
+    pub anisotropic: f32,
+    pub anisotropic_rotation: f32,
     pub diffuse_roughness: f32,
     pub ior: f32,
     pub alpha: f32,
@@ -167,6 +175,8 @@ impl PrincipledRecord {
             Input::BaseColor => Color(&mut self.base_color),
             Input::Metallic => Number(&mut self.metallic),
             Input::Roughness => Number(&mut self.roughness),
+            Input::Anisotropic => Number(&mut self.anisotropic),
+            Input::AnisotropicRotation => Number(&mut self.anisotropic_rotation),
             Input::DiffuseRoughness => Number(&mut self.diffuse_roughness),
             Input::Ior => Number(&mut self.ior),
             Input::Alpha => Number(&mut self.alpha),
@@ -182,7 +192,9 @@ impl PrincipledRecord {
             Input::SheenWeight => Number(&mut self.sheen_weight),
             Input::SheenRoughness => Number(&mut self.sheen_roughness),
             Input::SheenTint => Color(&mut self.sheen_tint),
-            Input::Weight | Input::Color | Input::Radiance => return None,
+            Input::Weight | Input::Color | Input::Radiance | Input::Anisotropy | Input::Rotation => {
+                return None;
+            }
         })
     }
 }
@@ -194,6 +206,8 @@ impl Default for PrincipledRecord {
             metallic: 0.0,
             roughness: 0.5,
             multiscatter: true,
+            anisotropic: 0.0,
+            anisotropic_rotation: 0.0,
             diffuse_roughness: 0.0,
             ior: 1.5,
             alpha: 1.0,
@@ -252,6 +266,9 @@ pub struct ProgramRecord {
     /// Closures with a shading normal of their own.
     #[serde(default)]
     pub normals: Vec<NormalRecord>,
+    /// Tangents of closures that are anisotropic.
+    #[serde(default)]
+    pub tangents: Vec<TangentRecord>,
 }
 
 /// A result that is the shading normal (world space) of one closure.
@@ -262,6 +279,17 @@ pub struct NormalRecord {
     pub closure: usize,
     /// True: of its coat alone; false: of all but its coat.
     pub coat: bool,
+    /// The result.
+    pub register: Register,
+}
+
+/// A result that is the tangent (world space, of any length) that the reflections of a closure are anisotropic about; they are
+/// isotropic where it is 0 or along the normal.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TangentRecord {
+    /// Index of the closure.
+    pub closure: usize,
     /// The result.
     pub register: Register,
 }
@@ -287,6 +315,10 @@ pub enum Input {
     Color,
     Radiance,
     Roughness,
+    Anisotropy,
+    Rotation,
+    Anisotropic,
+    AnisotropicRotation,
     DiffuseRoughness,
     Ior,
     BaseColor,
@@ -334,6 +366,8 @@ impl WeightedClosure {
                 | C::Sheen { roughness, .. },
                 Input::Roughness,
             ) => Some(Number(roughness)),
+            (C::Glossy { anisotropy, .. }, Input::Anisotropy) => Some(Number(anisotropy)),
+            (C::Glossy { rotation, .. }, Input::Rotation) => Some(Number(rotation)),
             (C::Glass { ior, .. } | C::Refraction { ior, .. }, Input::Ior) => Some(Number(ior)),
             (C::Principled(record), _) => record.input_mut(input),
             _ => None,
