@@ -156,6 +156,18 @@ def bumped(shader: Surface, *normals: str) -> Surface:
     return add
 
 
+def tangential(shader: Surface, direction: str, axis: str = "Z") -> Surface:
+    """A shader with the tangent of a Tangent node: around an axis ("RADIAL"), or of the UV map ("UV_MAP")."""
+
+    def add(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
+        made, tangent = shader(tree), tree.nodes.new("ShaderNodeTangent")
+        tangent.direction_type, tangent.axis = direction, axis
+        tree.links.new(tangent.outputs[0], made.node.inputs["Tangent"])
+        return made
+
+    return add
+
+
 GOLD = (0.9, 0.7, 0.4)
 BLUE = (0.2, 0.35, 0.7)
 TINT = (0.9, 0.95, 0.8)
@@ -164,6 +176,7 @@ _rough_diffuse = shader("BsdfDiffuse", Color=GOLD, Roughness=1.0)
 _coated = shader(
     "BsdfPrincipled", Base_Color=BLUE, Roughness=0.5, Metallic=0.6, Coat_Weight=1.0, Coat_Roughness=0.15
 )
+_brushed = shader("BsdfGlossy", Color=GOLD, Roughness=0.45, Anisotropy=0.6)
 MATERIALS: dict[str, Surface] = {
     "diffuse": _diffuse,
     "diffuse_rough_0.3": shader("BsdfDiffuse", Color=BLUE, Roughness=0.3),
@@ -221,6 +234,20 @@ MATERIALS: dict[str, Surface] = {
     "bumped_mix": joined(
         "MixShader", bumped(_diffuse, "Normal"), shader("BsdfGlossy", Color=GOLD, Roughness=0.4), 0.3
     ),
+    "anisotropic_principled": shader(
+        "BsdfPrincipled",
+        Base_Color=GOLD,
+        Roughness=0.4,
+        Metallic=0.8,
+        Anisotropic=0.8,
+        Anisotropic_Rotation=0.25,
+    ),
+    "anisotropic_plastic": shader("BsdfPrincipled", Base_Color=BLUE, Roughness=0.8, Anisotropic=0.5),
+    "anisotropic_glossy": shader("BsdfGlossy", Color=GOLD, Roughness=0.4, Anisotropy=-0.6, Rotation=0.1),
+    "anisotropic_rough": shader("BsdfGlossy", Color=GOLD, Roughness=0.8, Anisotropy=0.3),
+    "anisotropic_uv": tangential(_brushed, "UV_MAP"),
+    "anisotropic_radial": tangential(_brushed, "RADIAL", "X"),
+    "anisotropic_bumped": bumped(_brushed, "Normal"),
     "add": joined("AddShader", _diffuse, shader("Emission", Color=GOLD, Strength=0.3)),
 }
 """The ball's surface, by name; each is rendered under a constant world and under a square lamp."""
@@ -229,6 +256,10 @@ NEW_MATERIALS = {
         "BsdfPrincipled", Base_Color=BLUE, Roughness=0.5, Diffuse_Roughness=roughness
     )
     for roughness in (0.3, 1.0)
+} | {
+    "anisotropic_metallic": shader(
+        "BsdfMetallic", Base_Color=GOLD, Roughness=0.5, Anisotropy=0.9, Rotation=0.1
+    )
 }
 """Those that Blender 4.2 does not have."""
 if bpy.app.version >= (4, 3):
