@@ -156,16 +156,28 @@ def bumped(shader: Surface, *normals: str) -> Surface:
     return add
 
 
-def tangential(shader: Surface, direction: str, axis: str = "Z") -> Surface:
-    """A shader with the tangent of a Tangent node: around an axis ("RADIAL"), or of the UV map ("UV_MAP")."""
+def tangential(shader: Surface, axis: str | None = None) -> Surface:
+    """A shader with the tangent of a Tangent node: around an axis, or of a UV map whose lines spiral around the ball."""
 
     def add(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
         made, tangent = shader(tree), tree.nodes.new("ShaderNodeTangent")
-        tangent.direction_type, tangent.axis = direction, axis
+        if axis is None:
+            tangent.direction_type, tangent.uv_map = "UV_MAP", _add_spiral_map(bpy.context.object.data)
+        else:
+            tangent.axis = axis
         tree.links.new(tangent.outputs[0], made.node.inputs["Tangent"])
         return made
 
     return add
+
+
+def _add_spiral_map(mesh: bpy.types.Mesh) -> str:
+    """A second UV map, across the first; its name."""
+    first, spiral = mesh.uv_layers[0], mesh.uv_layers.new(name="Spiral")
+    for loop in range(len(mesh.loops)):
+        u, v = first.data[loop].uv
+        spiral.data[loop].uv = (u + v, v - u)
+    return spiral.name
 
 
 GOLD = (0.9, 0.7, 0.4)
@@ -245,8 +257,8 @@ MATERIALS: dict[str, Surface] = {
     "anisotropic_plastic": shader("BsdfPrincipled", Base_Color=BLUE, Roughness=0.8, Anisotropic=0.5),
     "anisotropic_glossy": shader("BsdfGlossy", Color=GOLD, Roughness=0.4, Anisotropy=-0.6, Rotation=0.1),
     "anisotropic_rough": shader("BsdfGlossy", Color=GOLD, Roughness=0.8, Anisotropy=0.3),
-    "anisotropic_uv": tangential(_brushed, "UV_MAP"),
-    "anisotropic_radial": tangential(_brushed, "RADIAL", "X"),
+    "anisotropic_uv": tangential(_brushed),
+    "anisotropic_radial": tangential(_brushed, "X"),
     "anisotropic_bumped": bumped(_brushed, "Normal"),
     "add": joined("AddShader", _diffuse, shader("Emission", Color=GOLD, Strength=0.3)),
 }

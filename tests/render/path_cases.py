@@ -78,13 +78,13 @@ def _room() -> None:
     cases.add_lamp(cases.MATERIAL_LAMP)
 
 
-def _closed_room(roughness: float) -> Callable[[], None]:
+def _closed_room(node: str, **sockets: float) -> Callable[[], None]:
     """The lamp shines at the ceiling, out of the picture: all light that is seen met it and more."""
 
     def add() -> None:
         walls = common.box_faces((-2.0, -4.5, 0.001), (2.0, 2.0, 3.4))
-        add_polygons("Walls", walls, shader("BsdfDiffuse", Color=(0.8, 0.8, 0.8), Roughness=roughness))
-        cases.add_ball(shader("BsdfDiffuse", Color=GOLD, Roughness=roughness))
+        add_polygons("Walls", walls, shader(node, Color=(0.8, 0.8, 0.8), **sockets))
+        cases.add_ball(shader(node, Color=GOLD, **sockets))
         where = ((0.3, -1.0, 2.7), (0.0, -0.7, 3.4))
         cases.add_lamp(cases.Lamp("AREA", 60.0, {"shape": "SQUARE", "size": 0.4}, where))
 
@@ -222,8 +222,10 @@ def _below_a_luminaire() -> None:
 
 PATHS: dict[str, Callable[[], None]] = {
     "diffuse_room": _room,
-    "closed_room": _closed_room(0.0),
-    "rough_closed_room": _closed_room(1.0),
+    "closed_room": _closed_room("BsdfDiffuse"),
+    "rough_closed_room": _closed_room("BsdfDiffuse", Roughness=1.0),
+    "glossy_closed_room": _closed_room("BsdfGlossy", Roughness=0.8),
+    "anisotropic_closed_room": _closed_room("BsdfGlossy", Roughness=0.8, Anisotropy=0.3, Rotation=0.1),
     "mirror_in_mirror": _ball_before_a_mirror(MIRROR),
     "glossy_in_mirror": _ball_before_a_mirror(shader("BsdfGlossy", Color=GOLD, Roughness=0.3)),
     "coat_in_mirror": _ball_before_a_mirror(
