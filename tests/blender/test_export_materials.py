@@ -41,7 +41,13 @@ def approx(closure):
         (
             "BsdfAnisotropic",
             {"Color": (0.1, 0.2, 0.3), "Roughness": 0.4},
-            {"kind": "glossy", "color": [0.1, 0.2, 0.3], "roughness": 0.4},
+            {
+                "kind": "glossy",
+                "color": [0.1, 0.2, 0.3],
+                "roughness": 0.4,
+                "anisotropy": 0.0,
+                "rotation": 0.0,
+            },
         ),
         (
             "BsdfGlass",
@@ -457,12 +463,6 @@ def test_principled_subsurface_keeps_its_albedo(scene, closures, problems, weigh
     assert record["kind"] == "principled"
     assert "subsurface_weight" not in record
     assert any("subsurface scattering is approximated" in text for text in problems()) == (weight > 0.0)
-
-
-@pytest.mark.parametrize("name", ["Anisotropic"])
-def test_principled_inputs_that_are_left_out(scene, closures, problems, name):
-    closures(build.surface("ShaderNodeBsdfPrincipled", **{name.replace(" ", "_"): 0.5}))
-    assert f'Material: node "Principled BSDF": {name} is not supported yet; left out' in problems()
 
 
 def test_displacement_and_volume_are_reported(scene, closures, recorded, problems):

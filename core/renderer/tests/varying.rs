@@ -27,6 +27,7 @@ fn programmed(closure: ClosureRecord, inputs: &[(Input, f32)]) -> MaterialRecord
         outputs: inputs.iter().enumerate().map(output).collect(),
         normal: None,
         normals: Vec::new(),
+        tangents: Vec::new(),
     });
     record
 }
@@ -85,6 +86,7 @@ fn a_program_of_constants_changes_no_share() {
         outputs: vec![output(0), output(1)],
         normal: None,
         normals: Vec::new(),
+        tangents: Vec::new(),
     });
     same_picture(constant, varying);
 }
@@ -112,6 +114,7 @@ fn texture_program(
         outputs: vec![OutputRecord { closure: 0, input, register: 1 }],
         normal: None,
         normals: Vec::new(),
+        tangents: Vec::new(),
     })
 }
 
@@ -180,6 +183,7 @@ fn the_length_of_a_normal_does_not_matter() {
             outputs: Vec::new(),
             normal: Some(2),
             normals: Vec::new(),
+            tangents: Vec::new(),
         });
         let mut builder = SceneBuilder::default();
         place(&mut builder, floor(1.0, 0.0), &[record]);
@@ -328,8 +332,13 @@ fn the_slope_of_a_bump_is_taken_over_its_filter_width() {
             x(12),
         ];
         let output = OutputRecord { closure: 0, input: Input::Radiance, register: 13 };
-        record.program =
-            Some(ProgramRecord { instructions, outputs: vec![output], normal: None, normals: Vec::new() });
+        record.program = Some(ProgramRecord {
+            instructions,
+            outputs: vec![output],
+            normal: None,
+            normals: Vec::new(),
+            tangents: Vec::new(),
+        });
         let mut builder = SceneBuilder::default();
         place(&mut builder, floor(1.0, 0.0), &[record]);
         builder.set_camera(parallel_camera(DVec3::Z, DVec3::ZERO, 0.5, 16));
