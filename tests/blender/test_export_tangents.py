@@ -6,7 +6,11 @@ import pytest
 from tests.blender import build
 
 SHADERS = [
-    ("Principled", {"Anisotropic": 0.8, "Anisotropic_Rotation": 0.25}, ("anisotropic", "anisotropic_rotation")),
+    (
+        "Principled",
+        {"Anisotropic": 0.8, "Anisotropic_Rotation": 0.25},
+        ("anisotropic", "anisotropic_rotation"),
+    ),
     ("Anisotropic", {"Anisotropy": -0.6, "Rotation": 0.1}, ("anisotropy", "rotation")),
 ]
 if bpy.app.version >= (4, 3):

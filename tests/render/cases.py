@@ -157,7 +157,7 @@ def bumped(shader: Surface, *normals: str) -> Surface:
 
 
 def tangential(shader: Surface, axis: str | None = None) -> Surface:
-    """A shader with the tangent of a Tangent node: around an axis, or of a UV map whose lines spiral around the ball."""
+    """A shader with the tangent of a Tangent node: around an axis, or of a UV map that spirals around the ball."""
 
     def add(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
         made, tangent = shader(tree), tree.nodes.new("ShaderNodeTangent")

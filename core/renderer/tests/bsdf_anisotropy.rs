@@ -124,7 +124,7 @@ fn directions_are_drawn_from_their_density() {
     }
 }
 
-/// With the microfacets' slope s times the alpha in one direction, D is 1 / (π a b cos⁴ (1 + s²)²); nothing is masked head-on,
+/// With the microfacets' slope s times the alpha in one direction, D is 1 / (π a b cos⁴ (1 + s²)²); head-on nothing is masked,
 /// and Λ of the other direction is that of its own plane.
 #[test]
 fn slopes_along_and_across_have_the_closed_form() {
@@ -249,7 +249,7 @@ fn without_a_direction_it_is_isotropic_of_the_mean_alpha() {
     }
 }
 
-/// Shares of light that white returns, from an independent integration of the GGX distribution with these alphas over that of
+/// Shares of light that white returns, from an independent integration of GGX with these alphas over that of
 /// their mean: what Cycles makes up for is what the mean loses.
 #[test]
 fn white_returns_what_the_mean_alpha_makes_up_for() {

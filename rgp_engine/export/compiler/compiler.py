@@ -120,7 +120,7 @@ class Compiler(Folder):
             self.report_node(source.b_node, message)
 
     def note_tangent(self, closure: int, source: Output) -> None:
-        """Remembers the tangent of a closure that is anisotropic: around the object's z axis where nothing is linked."""
+        """Remembers the tangent of a closure that is anisotropic; unlinked, it leads around the object's z axis."""
         is_linked = self.linked(source, "Tangent")
         tangent = self.input(source, "Tangent") if is_linked else self.radial_tangent("z")
         self.tangents.append({"closure": closure, "register": tangent.index})

@@ -1,8 +1,9 @@
-//! Microfacets with wider slopes along one direction of the surface than across it, as those of brushed metal: GGX with an
-//! alpha for each (Heitz 2014, see [`super::ggx`]).
+//! Microfacets with wider slopes along one direction of the surface than across it, as those of brushed metal: GGX with
+//! an alpha for each (Heitz 2014, see [`super::ggx`]).
 //!
-//! As in Cycles, tables of energy and layers below are asked for the geometric mean of both alphas. Slopes that differ return less
-//! than that says: white loses up to 0.12 at alphas of 0.6 and 0.2, up to 0.4 at 1 and 0.1, and gains at most 0.04, at grazing.
+//! As in Cycles, tables of energy and of layers are asked for the geometric mean of both alphas. Slopes that differ return
+//! less than that says: white loses up to 0.14 at alphas of 0.6 and 0.2, up to 0.4 at 1 and 0.1. It gains at most 0.04, at
+//! grazing, and nothing on the mean over all directions.
 
 use std::f32::consts::{PI, TAU};
 
@@ -18,7 +19,7 @@ const LEAST_ALPHA: f32 = 2.0 * DELTA_ALPHA;
 /// Steps of an azimuth around the circle: finer than the narrowest slopes.
 const AZIMUTHS: f32 = 65536.0;
 
-/// The alphas along the tangent and across it, that are `factors` times the one of a roughness; `None` where they are the same.
+/// The alphas along the tangent and across it, `factors` times that of a roughness; `None` where they are the same.
 pub(super) fn alphas(alpha: f32, factors: [f32; 2]) -> Option<[f32; 2]> {
     let [along, across] = factors.map(|factor| (alpha * factor).clamp(LEAST_ALPHA, 1.0));
     (alpha > 0.0 && along != across).then_some([along, across])

@@ -12,6 +12,7 @@ mod lens;
 mod links;
 mod mesh;
 mod motion;
+mod object_info;
 mod projection;
 pub mod record;
 
