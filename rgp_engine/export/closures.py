@@ -18,6 +18,8 @@ _PRINCIPLED = (
     ("Base Color", True),
     ("Metallic", False),
     ("Roughness", False),
+    ("Anisotropic", False),
+    ("Anisotropic Rotation", False),
     ("IOR", False),
     ("Alpha", False),
     ("Specular IOR Level", False),
@@ -35,8 +37,6 @@ _PRINCIPLED = (
 )
 # Inputs that are left out, and do nothing at 0.
 _LEFT_OUT = (
-    "Anisotropic",
-    "Anisotropy",
     "Thin Film Thickness",
     "Thin Wall",
 )
@@ -51,6 +51,8 @@ def closures(folder: Folder, entry: Input) -> tuple[list[WeightedClosure], list[
     records = []
     for index, (share, closure, source) in enumerate(_parts(folder, entry, 1.0)):
         folder.note_normals(index, source)
+        if closure.get("anisotropy", closure.get("anisotropic", 0.0)) != 0.0:
+            folder.note_tangent(index, source)
         record = {}
         for name, value in (("weight", share), *closure.items()):
             if isinstance(value, Varying):
@@ -202,12 +204,14 @@ def _metallic(folder: Folder, source: Output) -> Closure:
         "specular_tint": folder.color(source.input("Edge Tint")),
         "roughness": roughness,
         "multiscatter": _multiscatter(folder, source, roughness),
+        "anisotropic": folder.value(source.input("Anisotropy")),
+        "anisotropic_rotation": folder.value(source.input("Rotation")),
     }
 
 
 _SHADERS: dict[str, Callable[[Folder, Output], Closure]] = {
     "BSDF_DIFFUSE": _diffuse,
-    "BSDF_GLOSSY": _rough("glossy"),
+    "BSDF_GLOSSY": _rough("glossy", "Anisotropy", "Rotation"),
     "BSDF_GLASS": _rough("glass", "IOR"),
     "BSDF_REFRACTION": _rough("refraction", "IOR"),
     "BSDF_TRANSPARENT": _colored("transparent"),

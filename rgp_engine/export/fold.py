@@ -87,6 +87,9 @@ class Folder:
     def note_normals(self, closure: int, source: Output) -> None:
         """Remembers the normals a closure's shader asks for: only compilers have use for them."""
 
+    def note_tangent(self, closure: int, source: Output) -> None:
+        """As `note_normals`, for the tangent of a closure that is anisotropic."""
+
     def meet_shader(self) -> None:
         """Counts a shader node: a few that branch and meet again can be met more often than there is time for. Raises
         RecursionError."""

@@ -67,7 +67,8 @@ def material_record(compiler: Compiler, b_material: Any) -> dict[str, Any]:
     record: dict[str, Any] = {"name": name, "closures": records}
     if has_volume:
         record["absorption"] = list(absorption(compiler, volume))
-    if not outputs and not compiler.normals and compiler.normal is None:
+    has_directions = compiler.normals or compiler.tangents or compiler.normal is not None
+    if not outputs and not has_directions:
         return record
     if len(compiler.instructions) > MOST_INSTRUCTIONS:
         compiler.report("its nodes are too many; what varies is replaced by a typical value")
@@ -77,6 +78,7 @@ def material_record(compiler: Compiler, b_material: Any) -> dict[str, Any]:
         "outputs": outputs,
         "normal": None if compiler.normal is None else compiler.normal.index,
         "normals": compiler.normals,
+        "tangents": compiler.tangents,
     }
     return record
 

@@ -41,7 +41,14 @@ def approx(closure):
         (
             "BsdfAnisotropic",
             {"Color": (0.1, 0.2, 0.3), "Roughness": 0.4},
-            {"kind": "glossy", "color": [0.1, 0.2, 0.3], "roughness": 0.4, "multiscatter": True},
+            {
+                "kind": "glossy",
+                "color": [0.1, 0.2, 0.3],
+                "roughness": 0.4,
+                "anisotropy": 0.0,
+                "rotation": 0.0,
+                "multiscatter": True,
+            },
         ),
         (
             "BsdfGlass",
@@ -73,6 +80,8 @@ def test_principled(scene, closures):
         Base_Color=(0.7, 0.6, 0.5),
         Metallic=0.25,
         Roughness=0.35,
+        Anisotropic=0.45,
+        Anisotropic_Rotation=0.15,
         IOR=1.4,
         Alpha=0.9,
         Specular_IOR_Level=0.6,
@@ -95,6 +104,8 @@ def test_principled(scene, closures):
             "metallic": 0.25,
             "roughness": 0.35,
             "multiscatter": True,
+            "anisotropic": 0.45,
+            "anisotropic_rotation": 0.15,
             "ior": 1.4,
             "alpha": 0.9,
             "specular_ior_level": 0.6,
@@ -458,12 +469,6 @@ def test_principled_subsurface_keeps_its_albedo(scene, closures, problems, weigh
     assert record["kind"] == "principled"
     assert "subsurface_weight" not in record
     assert any("subsurface scattering is approximated" in text for text in problems()) == (weight > 0.0)
-
-
-@pytest.mark.parametrize("name", ["Anisotropic"])
-def test_principled_inputs_that_are_left_out(scene, closures, problems, name):
-    closures(build.surface("ShaderNodeBsdfPrincipled", **{name.replace(" ", "_"): 0.5}))
-    assert f'Material: node "Principled BSDF": {name} is not supported yet; left out' in problems()
 
 
 def test_displacement_and_volume_are_reported(scene, closures, recorded, problems):

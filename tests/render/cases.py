@@ -156,6 +156,30 @@ def bumped(shader: Surface, *normals: str) -> Surface:
     return add
 
 
+def tangential(shader: Surface, axis: str | None = None) -> Surface:
+    """A shader with the tangent of a Tangent node: around an axis, or of a UV map that spirals around the ball."""
+
+    def add(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
+        made, tangent = shader(tree), tree.nodes.new("ShaderNodeTangent")
+        if axis is None:
+            tangent.direction_type, tangent.uv_map = "UV_MAP", _add_spiral_map(bpy.context.object.data)
+        else:
+            tangent.axis = axis
+        tree.links.new(tangent.outputs[0], made.node.inputs["Tangent"])
+        return made
+
+    return add
+
+
+def _add_spiral_map(mesh: bpy.types.Mesh) -> str:
+    """A second UV map, across the first; its name."""
+    first, spiral = mesh.uv_layers[0], mesh.uv_layers.new(name="Spiral")
+    for loop in range(len(mesh.loops)):
+        u, v = first.data[loop].uv
+        spiral.data[loop].uv = (u + v, v - u)
+    return spiral.name
+
+
 GOLD = (0.9, 0.7, 0.4)
 BLUE = (0.2, 0.35, 0.7)
 TINT = (0.9, 0.95, 0.8)
@@ -164,6 +188,7 @@ _rough_diffuse = shader("BsdfDiffuse", Color=GOLD, Roughness=1.0)
 _coated = shader(
     "BsdfPrincipled", Base_Color=BLUE, Roughness=0.5, Metallic=0.6, Coat_Weight=1.0, Coat_Roughness=0.15
 )
+_brushed = shader("BsdfGlossy", Color=GOLD, Roughness=0.45, Anisotropy=0.6)
 MATERIALS: dict[str, Surface] = {
     "diffuse": _diffuse,
     "diffuse_rough_0.3": shader("BsdfDiffuse", Color=BLUE, Roughness=0.3),
@@ -234,6 +259,20 @@ MATERIALS: dict[str, Surface] = {
     "bumped_mix": joined(
         "MixShader", bumped(_diffuse, "Normal"), shader("BsdfGlossy", Color=GOLD, Roughness=0.4), 0.3
     ),
+    "anisotropic_principled": shader(
+        "BsdfPrincipled",
+        Base_Color=GOLD,
+        Roughness=0.4,
+        Metallic=0.8,
+        Anisotropic=0.8,
+        Anisotropic_Rotation=0.25,
+    ),
+    "anisotropic_plastic": shader("BsdfPrincipled", Base_Color=BLUE, Roughness=0.8, Anisotropic=0.5),
+    "anisotropic_glossy": shader("BsdfGlossy", Color=GOLD, Roughness=0.4, Anisotropy=-0.6, Rotation=0.1),
+    "anisotropic_rough": shader("BsdfGlossy", Color=GOLD, Roughness=0.8, Anisotropy=0.3),
+    "anisotropic_uv": tangential(_brushed),
+    "anisotropic_radial": tangential(_brushed, "X"),
+    "anisotropic_bumped": bumped(_brushed, "Normal"),
     "add": joined("AddShader", _diffuse, shader("Emission", Color=GOLD, Strength=0.3)),
 }
 """The ball's surface, by name; each is rendered under a constant world and under a square lamp."""
@@ -242,6 +281,10 @@ NEW_MATERIALS = {
         "BsdfPrincipled", Base_Color=BLUE, Roughness=0.5, Diffuse_Roughness=roughness
     )
     for roughness in (0.3, 1.0)
+} | {
+    "anisotropic_metallic": shader(
+        "BsdfMetallic", Base_Color=GOLD, Roughness=0.5, Anisotropy=0.9, Rotation=0.1
+    )
 }
 """Those that Blender 4.2 does not have."""
 if bpy.app.version >= (4, 3):

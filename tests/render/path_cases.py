@@ -79,7 +79,7 @@ def _room() -> None:
 
 
 def _closed_room(node: str, distribution: str = "", **sockets: float) -> Callable[[], None]:
-    """Walls and a ball of a shader: its distribution of microfacets if not the default, and sockets beside its color. The lamp shines at the ceiling, out of the picture: all light that is seen met it and more."""
+    """The lamp shines at the ceiling, out of the picture: all light that is seen met it and more."""
 
     def add() -> None:
         walls = common.box_faces((-2.0, -4.5, 0.001), (2.0, 2.0, 3.4))
@@ -227,6 +227,8 @@ PATHS: dict[str, Callable[[], None]] = {
     "rough_closed_room": _closed_room("BsdfDiffuse", Roughness=1.0),
     "ggx_closed_room": _closed_room("BsdfPrincipled", "GGX", Roughness=1.0),
     "ggx_metal_closed_room": _closed_room("BsdfPrincipled", "GGX", Roughness=0.8, Metallic=1.0),
+    "glossy_closed_room": _closed_room("BsdfGlossy", Roughness=0.8),
+    "anisotropic_closed_room": _closed_room("BsdfGlossy", Roughness=0.8, Anisotropy=0.3, Rotation=0.1),
     "mirror_in_mirror": _ball_before_a_mirror(MIRROR),
     "glossy_in_mirror": _ball_before_a_mirror(shader("BsdfGlossy", Color=GOLD, Roughness=0.3)),
     "coat_in_mirror": _ball_before_a_mirror(

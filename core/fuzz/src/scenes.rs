@@ -8,7 +8,7 @@ use rgp_renderer::scene::{CornerLayer, MeshArrays, ObjectInfo, ObjectLinks, Scen
 use crate::draw::Draw;
 use crate::programs::{instruction_records, texture};
 use crate::records::{Kind, Known, read, record, value};
-use crate::shapes::{CAMERA, CLOSURE, LAMP, NORMAL, OBJECT_INFO, OBJECT_LINKS, OUTPUT};
+use crate::shapes::{CAMERA, CLOSURE, LAMP, NORMAL, OBJECT_INFO, OBJECT_LINKS, OUTPUT, TANGENT};
 
 /// Most pixels of a side.
 const SIDE: usize = 4;
@@ -65,9 +65,15 @@ fn program(draw: &mut Draw<'_>, textures: usize) -> Value {
     let outputs = value(draw, Kind::List(3, OUTPUT), known);
     let normal = if draw.flag() { value(draw, Kind::Register, known) } else { Value::Null };
     let normals = value(draw, Kind::List(2, NORMAL), known);
+    let tangents = value(draw, Kind::List(2, TANGENT), known);
     let instructions = Value::Array(instructions);
-    let entries =
-        [("instructions", instructions), ("outputs", outputs), ("normal", normal), ("normals", normals)];
+    let entries = [
+        ("instructions", instructions),
+        ("outputs", outputs),
+        ("normal", normal),
+        ("normals", normals),
+        ("tangents", tangents),
+    ];
     Value::Map(entries.map(|(name, value)| (name.into(), value)).to_vec())
 }
 

@@ -2,7 +2,7 @@
 
 use rgp_renderer::scene::record::Input;
 use rgp_renderer::shader::{
-    BlendMode, CellHash, Extension, Feature, Fractal, GradientShape, Interpolation, MathFunction, Metric,
+    Axis, BlendMode, CellHash, Extension, Feature, Fractal, GradientShape, Interpolation, MathFunction, Metric,
     NormalSpace, Projection, Quantity, VectorFunction, VoronoiOutput, WaveDirection, WaveProfile,
 };
 
@@ -127,7 +127,8 @@ pub const INSTRUCTIONS: &[(&str, Fields)] = &[
     ("curves", &[("color", Register), ("table", Table(4)), ("low", Number), ("high", Number)]),
     ("fresnel", &[("ior", Register), ("normal", Register)]),
     ("layer_weight", &[("blend", Register), ("normal", Register), ("facing", Flag)]),
-    ("tangent", &[("generated", Register)]),
+    ("tangent", &[("generated", Register), ("axis", Word(words::<Axis>))]),
+    ("uv_tangent", &[("attribute", Whole(3))]),
     (
         "normal_map",
         &[
@@ -165,6 +166,8 @@ const PRINCIPLED: Fields = &[
     ("metallic", Number),
     ROUGHNESS,
     MULTISCATTER,
+    ("anisotropic", Number),
+    ("anisotropic_rotation", Number),
     ("diffuse_roughness", Number),
     IOR,
     ("alpha", Number),
@@ -185,7 +188,7 @@ const PRINCIPLED: Fields = &[
 /// Closures by name.
 pub const CLOSURES: &[(&str, Fields)] = &[
     ("diffuse", &[COLOR, ROUGHNESS]),
-    ("glossy", &[COLOR, ROUGHNESS, MULTISCATTER]),
+    ("glossy", &[COLOR, ROUGHNESS, ("anisotropy", Number), ("rotation", Number), MULTISCATTER]),
     ("glass", &[COLOR, ROUGHNESS, IOR, MULTISCATTER]),
     ("refraction", &[COLOR, ROUGHNESS, IOR]),
     ("translucent", &[COLOR]),
@@ -204,6 +207,9 @@ pub const OUTPUT: Fields = &[("closure", Below(3)), ("input", Word(words::<Input
 
 /// A result that is a normal.
 pub const NORMAL: Fields = &[("closure", Below(3)), ("coat", Flag), ("register", Register)];
+
+/// A result that is a tangent.
+pub const TANGENT: Fields = &[("closure", Below(3)), ("register", Register)];
 
 const LINKS: Fields = &[("receivers", Whole(4)), ("blockers", MaybeWhole(4))];
 

@@ -264,7 +264,7 @@ fn cycles() -> Vec<(ClosureRecord, bool, Rings)> {
     let copper = Rgb([0.9, 0.6, 0.2]);
     vec![
         (glossy(0.5, 0.7), true, gray([0.4245, 0.4114, 0.4107])),
-        (ClosureRecord::Glossy { color: Rgb([0.9, 0.5, 0.1]), roughness: 1.0, multiscatter: true }, true,
+        (ClosureRecord::Glossy { color: Rgb([0.9, 0.5, 0.1]), roughness: 1.0, anisotropy: 0.0, rotation: 0.0, multiscatter: true }, true,
             [[0.8122, 0.3386, 0.0565], [0.7894, 0.2958, 0.0450], [0.7690, 0.2584, 0.0349]]),
         (glass(1.0, 0.5, 1.5), false, gray([0.9763, 0.9945, 1.0014])),
         (glass(1.0, 0.8, 1.5), false, gray([0.9547, 0.9953, 0.9963])),

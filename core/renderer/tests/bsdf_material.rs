@@ -149,9 +149,15 @@ fn any_closure() -> impl Strategy<Value = ClosureRecord> {
         (any_color(), any_value()).prop_map(|(color, roughness)| ClosureRecord::Diffuse { color, roughness }),
         any_color().prop_map(|color| ClosureRecord::Translucent { color }),
         (any_color(), any_value()).prop_map(|(color, roughness)| ClosureRecord::Sheen { color, roughness }),
-        (any_color(), any_value(), any::<bool>()).prop_map(|(color, roughness, multiscatter)| {
-            ClosureRecord::Glossy { color, roughness, multiscatter }
-        }),
+        (any_color(), any_value(), any_value(), any_value(), any::<bool>()).prop_map(
+            |(color, roughness, anisotropy, rotation, multiscatter)| ClosureRecord::Glossy {
+                color,
+                roughness,
+                anisotropy,
+                rotation,
+                multiscatter,
+            },
+        ),
         (any_color(), any_value(), any_value(), any::<bool>()).prop_map(
             |(color, roughness, ior, multiscatter)| ClosureRecord::Glass {
                 color,
@@ -172,6 +178,8 @@ fn any_closure() -> impl Strategy<Value = ClosureRecord> {
                     metallic: v[0],
                     roughness: v[1],
                     multiscatter,
+                    anisotropic: v[7],
+                    anisotropic_rotation: v[8],
                     diffuse_roughness: v[3],
                     ior: v[2],
                     alpha: v[3],

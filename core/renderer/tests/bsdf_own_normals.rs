@@ -31,6 +31,7 @@ impl Linked {
             normals: normals
                 .map(|(register, &(closure, coat))| NormalRecord { closure, coat, register })
                 .collect(),
+            tangents: Vec::new(),
         };
         let material = Material {
             name: "test".into(),

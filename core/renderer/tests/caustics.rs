@@ -91,7 +91,13 @@ fn varnished_tile(roughness: f32) -> Scene {
     let mut builder = SceneBuilder::default();
     let varnish = material(&[
         ClosureRecord::Diffuse { color: Rgb::splat(0.4), roughness: 0.0 },
-        ClosureRecord::Glossy { color: Rgb::splat(0.3), roughness: 0.45, multiscatter: true },
+        ClosureRecord::Glossy {
+            color: Rgb::splat(0.3),
+            roughness: 0.45,
+            anisotropy: 0.0,
+            rotation: 0.0,
+            multiscatter: true,
+        },
     ]);
     place(&mut builder, floor(0.2, 0.0), &[varnish]);
     place(&mut builder, floor(1.0, 1.0), &[glossy(0.9, roughness)]);

@@ -145,8 +145,14 @@ fn on_changes_nothing_where_nothing_calls_for_it() {
         ("diffuse", room(ClosureRecord::Diffuse { color: Rgb::splat(0.5), roughness: 0.0 }).builder()),
         (
             "glossy",
-            room(ClosureRecord::Glossy { color: Rgb::splat(0.8), roughness: 0.7, multiscatter: true })
-                .builder(),
+            room(ClosureRecord::Glossy {
+                color: Rgb::splat(0.8),
+                roughness: 0.7,
+                anisotropy: 0.0,
+                rotation: 0.0,
+                multiscatter: true,
+            })
+            .builder(),
         ),
         ("glass", room(glass()).builder()),
         ("one mirror in the world", {

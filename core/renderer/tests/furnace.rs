@@ -78,7 +78,13 @@ fn sphere_of_albedo_one_half_and_nine_tenths() {
 fn box_of_half_mirrors() {
     let closures = [
         ClosureRecord::Diffuse { color: Rgb::splat(0.4), roughness: 0.0 },
-        ClosureRecord::Glossy { color: Rgb::splat(0.3), roughness: 0.0, multiscatter: true },
+        ClosureRecord::Glossy {
+            color: Rgb::splat(0.3),
+            roughness: 0.0,
+            anisotropy: 0.0,
+            rotation: 0.0,
+            multiscatter: true,
+        },
         ClosureRecord::Emission { radiance: Rgb::WHITE },
     ];
     let mut builder = SceneBuilder::default();

@@ -196,7 +196,13 @@ fn facing_wall(side: usize, corners: [Vec3; 4]) -> rgp_renderer::scene::record::
 fn plates_between_mirrors() {
     let (glowing, gray, emitted) = (0.4, 0.7, 1.0);
     let plate = emitted / (1.0 - glowing * gray);
-    let mirror = material(&[ClosureRecord::Glossy { color: Rgb::WHITE, roughness: 0.0, multiscatter: true }]);
+    let mirror = material(&[ClosureRecord::Glossy {
+        color: Rgb::WHITE,
+        roughness: 0.0,
+        anisotropy: 0.0,
+        rotation: 0.0,
+        multiscatter: true,
+    }]);
     let (low, high) = (Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, 0.5, 0.6));
     for (at, radiosity) in [(-DVec3::Z, plate), (DVec3::Z, gray * plate)] {
         let mut builder = SceneBuilder::default();

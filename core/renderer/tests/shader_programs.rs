@@ -105,7 +105,7 @@ fn any_instruction(kind: usize, r: [u16; 10], x: [f32; 4]) -> Instruction {
             let space = NormalSpace::Tangent;
             return Instruction::NormalMap { color: r[0], strength: r[1], space, attribute: r[2].into() };
         }
-        19 => json!({"op": "tangent", "generated": r[0]}),
+        19 => json!({"op": "tangent", "generated": r[0], "axis": pick(&["x", "y", "z"])}),
         20 => {
             json!({"op": "panorama", "vector": r[0], "projection": pick(&["sphere", "tube", "mirror_ball"])})
         }

@@ -27,6 +27,7 @@ fn programmed(closure: ClosureRecord, inputs: &[(Input, f32)]) -> MaterialRecord
         outputs: inputs.iter().enumerate().map(output).collect(),
         normal: None,
         normals: Vec::new(),
+        tangents: Vec::new(),
     });
     record
 }
@@ -53,7 +54,13 @@ fn a_program_of_constants_changes_no_lambert_surface() {
 
 #[test]
 fn a_program_of_constants_changes_no_glossy_surface() {
-    let typical = ClosureRecord::Glossy { color: Rgb::splat(0.1), roughness: 0.2, multiscatter: true };
+    let typical = ClosureRecord::Glossy {
+        color: Rgb::splat(0.1),
+        roughness: 0.2,
+        anisotropy: 0.0,
+        rotation: 0.0,
+        multiscatter: true,
+    };
     let varying = programmed(typical, &[(Input::Color, 0.8), (Input::Roughness, 0.7)]);
     same_picture(glossy(0.8, 0.7), varying);
 }
@@ -79,6 +86,7 @@ fn a_program_of_constants_changes_no_share() {
         outputs: vec![output(0), output(1)],
         normal: None,
         normals: Vec::new(),
+        tangents: Vec::new(),
     });
     same_picture(constant, varying);
 }
@@ -106,6 +114,7 @@ fn texture_program(
         outputs: vec![OutputRecord { closure: 0, input, register: 1 }],
         normal: None,
         normals: Vec::new(),
+        tangents: Vec::new(),
     })
 }
 
@@ -174,6 +183,7 @@ fn the_length_of_a_normal_does_not_matter() {
             outputs: Vec::new(),
             normal: Some(2),
             normals: Vec::new(),
+            tangents: Vec::new(),
         });
         let mut builder = SceneBuilder::default();
         place(&mut builder, floor(1.0, 0.0), &[record]);
@@ -322,8 +332,13 @@ fn the_slope_of_a_bump_is_taken_over_its_filter_width() {
             x(12),
         ];
         let output = OutputRecord { closure: 0, input: Input::Radiance, register: 13 };
-        record.program =
-            Some(ProgramRecord { instructions, outputs: vec![output], normal: None, normals: Vec::new() });
+        record.program = Some(ProgramRecord {
+            instructions,
+            outputs: vec![output],
+            normal: None,
+            normals: Vec::new(),
+            tangents: Vec::new(),
+        });
         let mut builder = SceneBuilder::default();
         place(&mut builder, floor(1.0, 0.0), &[record]);
         builder.set_camera(parallel_camera(DVec3::Z, DVec3::ZERO, 0.5, 16));

@@ -61,6 +61,8 @@ class Compiler(Folder):
         """The register that is the shading normal of what has none of its own."""
         self.normals: list[dict[str, Any]] = []
         """The core's NormalRecords: closures with a shading normal of their own."""
+        self.tangents: list[dict[str, int]] = []
+        """The core's TangentRecords: of closures that are anisotropic."""
         self._silent = Folder(subject, b_depsgraph=context.b_depsgraph)
         self._known: dict[tuple[Any, ...], Operand] = {}
         self._numbers: dict[str, Register] = {}
@@ -116,6 +118,12 @@ class Compiler(Folder):
         else:
             message = f"a constant {identifier} is not supported; the surface's own is used instead"
             self.report_node(source.b_node, message)
+
+    def note_tangent(self, closure: int, source: Output) -> None:
+        """Remembers the tangent of a closure that is anisotropic; unlinked, it leads around the object's z axis."""
+        is_linked = self.linked(source, "Tangent")
+        tangent = self.input(source, "Tangent") if is_linked else self.radial_tangent("z")
+        self.tangents.append({"closure": closure, "register": tangent.index})
 
     # What the nodes are made of.
 
@@ -237,6 +245,10 @@ class Compiler(Folder):
     def generated(self) -> Register:
         """Where textures are looked up if nothing else is said."""
         return self.quantity("position") if self.of_world else self.attribute("generated")
+
+    def radial_tangent(self, axis: str) -> Register:
+        """The direction around an axis of the object along the surface."""
+        return self.emit("tangent", generated=self.generated(), axis=axis)
 
     def transformed(self, vector: Register, rows: Iterable[Iterable[float]]) -> Register:
         """A matrix (3 x 4) times a point."""

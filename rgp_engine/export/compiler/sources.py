@@ -1,7 +1,7 @@
 """Nodes that look at the hit: textures, coordinates, geometry, attributes."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..arithmetic import clamp
 from ..fold import Varying
@@ -83,7 +83,23 @@ def _uv_map(c: "Compiler", source: Output) -> "Operand | None":
     b_node = source.b_node
     if b_node.from_instancer:
         return None
-    return c.attribute(f"uv:{b_node.uv_map}" if b_node.uv_map else "uv")
+    return c.attribute(_uv_layer(b_node))
+
+
+def _uv_layer(b_node: Any) -> str:
+    """The layer of a node that names a UV map, or none for the mesh's first."""
+    return f"uv:{b_node.uv_map}" if b_node.uv_map else "uv"
+
+
+def _tangent(c: "Compiler", source: Output) -> "Operand | None":
+    b_node = source.b_node
+    if c.of_world or c.of_lamp:
+        return None
+    if b_node.direction_type == "RADIAL":
+        return c.radial_tangent(b_node.axis.lower())
+    layer = _uv_layer(b_node)
+    c.attributes.add(layer)
+    return c.emit("uv_tangent", attribute=c.context.attribute_number(layer))
 
 
 def _texture_coordinate(c: "Compiler", source: Output) -> "Operand | None":
@@ -121,7 +137,7 @@ _GEOMETRY = {
 def _geometry(c: "Compiler", source: Output) -> "Operand | None":
     has_mesh = not (c.of_world or c.of_lamp)
     if source.b_socket.identifier == "Tangent" and has_mesh:
-        return c.emit("tangent", generated=c.generated())
+        return c.radial_tangent("z")
     if source.b_socket.identifier == "Random Per Island" and has_mesh:
         return c.attribute("island")
     name = _GEOMETRY.get(source.b_socket.identifier)
@@ -224,7 +240,7 @@ def _normal_map(c: "Compiler", source: Output) -> "Operand | None":
     space = {"TANGENT": "tangent", "OBJECT": "object", "WORLD": "world"}.get(b_node.space)
     if space is None:
         return None
-    layer = f"uv:{b_node.uv_map}" if b_node.uv_map else "uv"
+    layer = _uv_layer(b_node)
     if space == "tangent":
         c.attributes.add(layer)
     return c.emit(
@@ -280,6 +296,7 @@ NODES: "dict[str, Callable[[Compiler, Output], Operand | None]]" = {
     "UVMAP": _uv_map,
     "TEX_COORD": _texture_coordinate,
     "NEW_GEOMETRY": _geometry,
+    "TANGENT": _tangent,
     "OBJECT_INFO": _object_info,
     "LIGHT_PATH": _light_path,
     "LIGHT_FALLOFF": _light_falloff,
@@ -301,6 +318,7 @@ SOURCES: "dict[str, Callable[[Compiler, Output], bool]]" = {
     "UVMAP": _known(_uv_map),
     "TEX_COORD": _known(_texture_coordinate),
     "NEW_GEOMETRY": _known(_geometry),
+    "TANGENT": _known(_tangent),
     "OBJECT_INFO": _known(_object_info),
     "LIGHT_PATH": _known(_light_path),
     "LIGHT_FALLOFF": _falls_off,

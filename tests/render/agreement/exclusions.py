@@ -26,7 +26,6 @@ NOT_RENDERED: dict[str, str] = {
     "world/volumes": _LEFT_OUT,
     "shader/Principled, Metallic, Glossy and Glass BSDF, distribution GGX": "it loses light; Multiscatter "
     "GGX, which keeps it, is used instead, with a warning",
-    "shader/Principled BSDF, Anisotropic": _LEFT_OUT,
     "shader/Principled BSDF, Thin Film": _LEFT_OUT,
     "shader/Metallic BSDF, Physical Conductor": "not supported yet; F82 is used instead, with a warning",
     "lamp_node/light that nodes make negative": "counts as none; Cycles takes it away from other light",

@@ -1,5 +1,6 @@
 //! Closures made ready for the render: each makes its lobes.
 
+use super::anisotropy::Anisotropy;
 use super::dielectric::{self, Glass};
 use super::lobe::{Lobe, transmission_class};
 use super::normals::Layers;
@@ -19,6 +20,8 @@ pub(super) struct Part {
     pub(super) closure: PreparedClosure,
     /// The normals it scatters about, see [`super::lobe::Lobe::normal`].
     pub(super) normals: Layers<u8>,
+    /// What of its reflections differs along the surface, where its tangent is known.
+    pub(super) anisotropy: Option<Anisotropy>,
 }
 
 /// A closure that makes lobes; transparency, constant emission and Lambert about the frame's normal are merged in the material.
@@ -31,6 +34,8 @@ pub(super) enum PreparedClosure {
     Glossy {
         color: Rgb,
         rough: Roughness,
+        /// Of the tangent (turns).
+        rotation: f32,
     },
     Glass(Glass),
     Refraction {
@@ -60,7 +65,7 @@ impl PreparedClosure {
             Self::Diffuse { color, roughness } => {
                 lobes.push(Lobe::diffuse(weight * *color, *color, *roughness, cos.base, slot));
             }
-            Self::Glossy { color, rough } => {
+            Self::Glossy { color, rough, .. } => {
                 reflection::push_constant(lobes, weight, *color, *rough, cos.base, slot);
             }
             Self::Glass(glass) => glass.push(lobes, weight, entering, cos.base, slot),
@@ -81,6 +86,20 @@ impl PreparedClosure {
     /// True when what is emitted below a coat depends on the direction.
     pub(super) fn dims_its_emission(&self) -> bool {
         matches!(self, Self::Principled(principled) if principled.dims_its_emission())
+    }
+
+    /// The alphas of its reflections along a tangent and across it, where they differ, and the turns of the tangent.
+    pub(super) fn anisotropy(&self) -> Option<([f32; 2], f32)> {
+        match self {
+            Self::Glossy { rough, rotation, .. } => rough.pair.map(|alpha| (alpha, *rotation)),
+            Self::Principled(principled) => principled.anisotropy(),
+            _ => None,
+        }
+    }
+
+    /// True for the slots of lobes that are anisotropic where the closure is.
+    pub(super) fn is_anisotropic(&self, slot: u8) -> bool {
+        !matches!(self, Self::Principled(_)) || principled::is_anisotropic(slot)
     }
 
     pub(super) fn classes(&self) -> LobeSet {
@@ -105,7 +124,7 @@ impl PreparedClosure {
 
     pub(super) fn rough_tint(&self) -> Rgb {
         match self {
-            Self::Glossy { color, rough } if rough.reflection_class() == LobeSet::ROUGH => *color,
+            Self::Glossy { color, rough, .. } if rough.reflection_class() == LobeSet::ROUGH => *color,
             Self::Glass(glass) if glass.rough.reflection_class() == LobeSet::ROUGH => {
                 glass.f0 * glass.reflection_tint
             }

@@ -275,7 +275,7 @@ fn integrate<const K: usize>(alpha: f32, cos: f32, f: impl Fn(Vec3, Vec3) -> [f3
     let stretched = Vec3::new(wo.x * alpha, 0.0, wo.z).normalize();
     let mut sum = [0.0; K];
     for (azimuth, u) in LATTICE.iter() {
-        let value = f(wo, ggx::visible_normal(alpha, stretched, *azimuth, *u));
+        let value = f(wo, ggx::visible_normal([alpha; 2], stretched, *azimuth, *u));
         for (total, v) in sum.iter_mut().zip(value) {
             *total += v;
         }

@@ -1,5 +1,6 @@
 //! The GGX (Trowbridge–Reitz) distribution with Smith's height-correlated masking (Heitz 2014, "Understanding the
-//! Masking-Shadowing Function in Microfacet-Based BRDFs"). Isotropic; `alpha` is Blender's roughness squared.
+//! Masking-Shadowing Function in Microfacet-Based BRDFs"). `alpha` is Blender's roughness squared; where there are
+//! two they are those along the x and y axes.
 
 use std::f32::consts::{PI, TAU};
 
@@ -21,18 +22,18 @@ pub(super) fn lambda(alpha: f32, cos: f32) -> f32 {
 
 /// A microfacet normal visible from `wo` (both in the local frame, z the normal), its density
 /// D · G1 · (wo·h) / cos (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps").
-pub(super) fn sample_visible_normal(alpha: f32, wo: Vec3, u: [f32; 2]) -> Vec3 {
-    let stretched = Vec3::new(wo.x * alpha, wo.y * alpha, wo.z).normalize();
+pub(super) fn sample_visible_normal(alpha: [f32; 2], wo: Vec3, u: [f32; 2]) -> Vec3 {
+    let stretched = Vec3::new(wo.x * alpha[0], wo.y * alpha[1], wo.z).normalize();
     let (sin_phi, cos_phi) = (TAU * u[0]).sin_cos();
     visible_normal(alpha, stretched, [cos_phi, sin_phi], u[1])
 }
 
 /// [`sample_visible_normal`] with the stretched direction and the azimuth (cos, sin) at hand.
-pub(super) fn visible_normal(alpha: f32, stretched: Vec3, azimuth: [f32; 2], u: f32) -> Vec3 {
+pub(super) fn visible_normal(alpha: [f32; 2], stretched: Vec3, azimuth: [f32; 2], u: f32) -> Vec3 {
     let z = (1.0 - u) * (1.0 + stretched.z) - stretched.z;
     let sin = (1.0 - z * z).max(0.0).sqrt();
     let half = Vec3::new(sin * azimuth[0], sin * azimuth[1], z) + stretched;
-    Vec3::new(half.x * alpha, half.y * alpha, half.z.max(0.0)).try_normalize().unwrap_or(Vec3::Z)
+    Vec3::new(half.x * alpha[0], half.y * alpha[1], half.z.max(0.0)).try_normalize().unwrap_or(Vec3::Z)
 }
 
 #[cfg(test)]
@@ -58,7 +59,9 @@ mod tests {
         for i in 0..1000 {
             let u = [(i as f32 * 0.618_034).fract(), (i as f32 * 0.754_878).fract()];
             let wo = Vec3::new(0.995, 0.0, 0.0998).normalize();
-            assert!(sample_visible_normal(0.7, wo, u).dot(wo) >= 0.0);
+            for alpha in [[0.7; 2], [0.9, 0.1]] {
+                assert!(sample_visible_normal(alpha, wo, u).dot(wo) >= 0.0);
+            }
         }
     }
 }

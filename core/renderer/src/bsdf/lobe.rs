@@ -4,6 +4,7 @@ use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
+use super::anisotropy::Anisotropic;
 use super::oren_nayar::{Facets, LEAST_ROUGHNESS};
 use super::sheen::Sheen;
 use super::{LobeSet, ShadingFrame, fresnel, ggx};
@@ -49,6 +50,8 @@ pub(super) enum Shape {
     Sheen(Sheen),
     /// GGX reflection.
     Reflection { alpha: f32 },
+    /// GGX reflection whose alpha is not the same in all directions.
+    Anisotropic(Anisotropic),
     /// GGX refraction; `eta` is the index on the far side over that on the viewer's side.
     Transmission { alpha: f32, eta: f32 },
 }
@@ -180,6 +183,11 @@ impl Lobe {
                 let value = d / (4.0 * cos_o * cos_i * (1.0 + lambda_o + lambda_i));
                 (self.factor(cos_h) * value, d / (4.0 * cos_o * (1.0 + lambda_o)))
             }
+            Shape::Anisotropic(facets) => {
+                let (value, density) = facets.value(frame.ns, [wo, wi], [cos_o, cos_i]);
+                let cos_h = wo.dot((wo + wi).normalize_or(frame.ns)).clamp(0.0, 1.0);
+                (self.factor(cos_h) * value, density)
+            }
             Shape::Transmission { alpha, eta } => {
                 let sum = wo + wi * eta;
                 let h = sum.normalize_or(frame.ns);
@@ -200,12 +208,13 @@ impl Lobe {
 
     /// A direction of this lobe. For a delta lobe it is the only one.
     pub(super) fn sample(&self, frame: &ShadingFrame, wo: Vec3, u: [f32; 2]) -> Option<Vec3> {
+        let mirrored = |h: Vec3| Some((h * (2.0 * wo.dot(h)) - wo).normalize());
         let microfacet = |alpha: f32| {
             if self.class == LobeSet::DELTA {
                 return frame.ns;
             }
             let basis = Frame::new(frame.ns);
-            basis.from_local(ggx::sample_visible_normal(alpha, basis.to_local(wo), u))
+            basis.from_local(ggx::sample_visible_normal([alpha; 2], basis.to_local(wo), u))
         };
         match self.shape {
             Shape::Lambert | Shape::OrenNayar(_) => {
@@ -213,10 +222,8 @@ impl Lobe {
             }
             Shape::Translucent => Some(-Frame::new(frame.ns).from_local(cosine_hemisphere(u))),
             Shape::Sheen(sheen) => Some(sheen.sample(frame, wo, u)),
-            Shape::Reflection { alpha } => {
-                let h = microfacet(alpha);
-                Some((h * (2.0 * wo.dot(h)) - wo).normalize())
-            }
+            Shape::Reflection { alpha } => mirrored(microfacet(alpha)),
+            Shape::Anisotropic(facets) => mirrored(facets.sample_visible_normal(frame.ns, wo, u)),
             Shape::Transmission { alpha, eta } => fresnel::refract(wo, microfacet(alpha), eta),
         }
     }

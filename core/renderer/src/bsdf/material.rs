@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{Quat, Vec3};
 use smallvec::SmallVec;
 
+use super::anisotropy::{self, Anisotropy};
 use super::closure::{Part, PreparedClosure, most_lobes};
 use super::dielectric::Glass;
 use super::lobe::Lobe;
@@ -69,7 +70,7 @@ impl PreparedMaterial {
     #[must_use]
     pub fn new(material: &Material, problems: &mut Vec<Problem>) -> Self {
         let mut sanitizer = Sanitizer::default();
-        let mut prepared = Self::of_closures(&material.closures, Normals::default(), &mut sanitizer);
+        let mut prepared = Self::of_closures(&material.closures, Normals::default(), &[], &mut sanitizer);
         prepared.finish();
         prepared.absorption = sanitizer.absorption(material.absorption);
         sanitizer.report(&material.name, problems);
@@ -79,12 +80,17 @@ impl PreparedMaterial {
         prepared
     }
 
-    /// What a hit needs of closures that hold there alone.
-    pub(super) fn at_hit(closures: &[WeightedClosure], normals: Normals) -> Self {
-        Self::of_closures(closures, normals, &mut Sanitizer::default())
+    /// What a hit needs of closures that hold there alone; `tangents` are theirs, 0 where they have none.
+    pub(super) fn at_hit(closures: &[WeightedClosure], normals: Normals, tangents: &[Vec3]) -> Self {
+        Self::of_closures(closures, normals, tangents, &mut Sanitizer::default())
     }
 
-    fn of_closures(closures: &[WeightedClosure], normals: Normals, sanitizer: &mut Sanitizer) -> Self {
+    fn of_closures(
+        closures: &[WeightedClosure],
+        normals: Normals,
+        tangents: &[Vec3],
+        sanitizer: &mut Sanitizer,
+    ) -> Self {
         let mut prepared = Self { normals, ..Self::default() };
         let mut lobes = 1;
         for (index, weighted) in closures.iter().enumerate() {
@@ -94,7 +100,7 @@ impl PreparedMaterial {
             if lobes > MAX_LOBES {
                 sanitizer.dropped += 1;
             } else if !weight.is_black() {
-                prepared.add(weight, &closure, index);
+                prepared.add(weight, &closure, index, tangents);
             }
         }
         prepared.lambert = sanitizer.at_most_one(prepared.lambert);
@@ -107,7 +113,7 @@ impl PreparedMaterial {
     /// Makes the material one of closures that differ from point to point, and whatever it says of itself hold for all.
     fn vary(&mut self, varying: Varying) {
         for extreme in varying.extremes() {
-            let mut extreme = Self::at_hit(&extreme, Normals::default());
+            let mut extreme = Self::at_hit(&extreme, Normals::default(), &[]);
             extreme.finish();
             self.classes = self.classes | extreme.classes;
             self.transparency += extreme.straight;
@@ -132,7 +138,7 @@ impl PreparedMaterial {
     }
 
     /// Adds the closure that is number `index` of the material's.
-    fn add(&mut self, weight: Rgb, closure: &ClosureRecord, index: usize) {
+    fn add(&mut self, weight: Rgb, closure: &ClosureRecord, index: usize, tangents: &[Vec3]) {
         let is_merged = self.normals.is_shared();
         let (weight, closure) = match *closure {
             ClosureRecord::Diffuse { color, roughness } if is_merged && roughness < LEAST_ROUGHNESS => {
@@ -155,8 +161,10 @@ impl PreparedMaterial {
                 (weight, PreparedClosure::Diffuse { color, roughness })
             }
             ClosureRecord::Translucent { color } => (weight * color, PreparedClosure::Translucent),
-            ClosureRecord::Glossy { color, roughness, multiscatter } => {
-                (weight, PreparedClosure::Glossy { color, rough: Roughness::new(roughness, multiscatter) })
+            ClosureRecord::Glossy { color, roughness, anisotropy, rotation, multiscatter } => {
+                let factors = anisotropy::glossy_factors(anisotropy);
+                let rough = Roughness::new(roughness, multiscatter).stretched(factors);
+                (weight, PreparedClosure::Glossy { color, rough, rotation })
             }
             ClosureRecord::Glass { color, roughness, ior, multiscatter } => {
                 let rough = Roughness::new(roughness, multiscatter);
@@ -182,7 +190,11 @@ impl PreparedMaterial {
             }
         };
         let normals = self.normals.of_closure(index, &closure);
-        self.closures.push(Part { weight, closure, normals });
+        let anisotropy = tangents
+            .get(index)
+            .zip(closure.anisotropy())
+            .map(|(&tangent, (alpha, rotation))| Anisotropy { alpha, rotation, tangent });
+        self.closures.push(Part { weight, closure, normals, anisotropy });
     }
 
     /// Derives what is asked of the material as a whole.
@@ -326,6 +338,11 @@ impl PreparedMaterial {
         &self.normals
     }
 
+    /// True where some reflection differs along the surface.
+    pub(super) fn is_anisotropic(&self) -> bool {
+        self.closures.iter().any(|part| part.anisotropy.is_some())
+    }
+
     /// True when there is no lobe but Lambert's.
     pub(super) fn is_plain(&self) -> bool {
         self.closures.is_empty()
@@ -361,11 +378,15 @@ impl PreparedMaterial {
 impl<'a> MaterialRef<'a> {
     /// The material of a surface that was turned.
     pub(super) fn turned(self, rotation: Quat) -> Self {
-        if self.normals.is_shared() {
+        if self.normals.is_shared() && !self.is_anisotropic() {
             return self;
         }
         let normals = self.normals.turned(rotation);
-        Self::Own(Arc::new(PreparedMaterial { normals, ..(*self).clone() }))
+        let mut turned = PreparedMaterial { normals, ..(*self).clone() };
+        for anisotropy in turned.closures.iter_mut().filter_map(|part| part.anisotropy.as_mut()) {
+            anisotropy.tangent = rotation * anisotropy.tangent;
+        }
+        Self::Own(Arc::new(turned))
     }
 
     #[inline]
@@ -383,15 +404,20 @@ impl<'a> MaterialRef<'a> {
             lobes.push(Lobe::lambert(material.lambert, 0));
         }
         for (slot, part) in (1..).step_by(principled::LOBES).zip(&material.closures) {
-            let Part { weight, closure, normals } = part;
+            let Part { weight, closure, normals, anisotropy } = part;
+            let first = lobes.len();
             if normals.base == 0 {
                 emission += closure.push(&mut lobes, *weight, frame.entering, Layers::all(cos), slot);
             } else {
-                let (first, cos) = (lobes.len(), material.normals.cosines(*normals, wo, &frame));
+                let cos = material.normals.cosines(*normals, wo, &frame);
                 emission += closure.push(&mut lobes, *weight, frame.entering, cos, slot);
                 for lobe in &mut lobes[first..] {
                     lobe.normal = principled::layer(*normals, lobe.slot - slot);
                 }
+            }
+            if let Some(anisotropy) = anisotropy {
+                let ns = material.normals.reflecting(normals.base, wo, &frame);
+                anisotropy.lay(&mut lobes[first..], ns, |lobe| closure.is_anisotropic(lobe.slot - slot));
             }
         }
         if material.left_out.lobes != LobeSet::EMPTY {

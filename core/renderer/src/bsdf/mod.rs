@@ -17,6 +17,7 @@
 //!   on leaving, so that irradiance stored anywhere is what the radiance mode would gather. Shading normals get Veach's
 //!   correction (1997, section 5.3.2) for the same reason.
 
+mod anisotropy;
 mod closure;
 mod dielectric;
 mod energy_table;
@@ -259,9 +260,15 @@ impl Bsdf<'_> {
     /// The same, of a surface that was turned, with where the ray came from.
     #[must_use]
     pub fn turned(self, rotation: Quat) -> Self {
+        let (wo, material) = (rotation * self.wo, self.material.turned(rotation));
+        if material.is_anisotropic() {
+            // Lobes keep tangents in frames that depend on where the normal points.
+            let [ng, ns] = self.frame.unturned().map(|normal| rotation * normal);
+            return material.bsdf(wo, ng, ns);
+        }
         let frame = &self.frame;
         let frame = ShadingFrame { ns: rotation * frame.ns, ng: rotation * frame.ng, ..*frame };
-        Self { material: self.material.turned(rotation), wo: rotation * self.wo, frame, ..self }
+        Self { material, wo, frame, ..self }
     }
 
     /// Shading normal of the side that light must come from to reach `wo`; `None` where it may come through.

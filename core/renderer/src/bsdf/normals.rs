@@ -144,6 +144,11 @@ impl Normals {
         ShadingFrame::new(wo, frame.unturned()[0], self.vector(normal))
     }
 
+    /// What reflections of a normal are about, see [`Bsdf::own_frame`].
+    pub(super) fn reflecting(&self, normal: u8, wo: Vec3, frame: &ShadingFrame) -> Vec3 {
+        if normal == 0 { frame.ns } else { self.frame(normal, wo, frame).mirroring_above(wo).ns }
+    }
+
     /// Cosines of the viewer to the normals of a closure.
     pub(super) fn cosines(&self, layers: Layers<u8>, wo: Vec3, frame: &ShadingFrame) -> Layers<f32> {
         let cos = |frame: ShadingFrame| wo.dot(frame.ns).clamp(0.0, 1.0);
@@ -181,7 +186,9 @@ impl Bsdf<'_> {
                 ShadingFrame { ns, ..self.frame }
             }
             Shape::Sheen(_) => own().bent_below(self.wo),
-            Shape::Reflection { .. } | Shape::Transmission { .. } => own().mirroring_above(self.wo),
+            Shape::Reflection { .. } | Shape::Anisotropic(_) | Shape::Transmission { .. } => {
+                own().mirroring_above(self.wo)
+            }
         }
     }
 
@@ -195,7 +202,7 @@ impl Bsdf<'_> {
         }
         let (value, pdf) = lobe.eval(&frame, self.wo, wi);
         let arriving = match lobe.shape {
-            Shape::Reflection { .. } | Shape::Transmission { .. } => 1.0,
+            Shape::Reflection { .. } | Shape::Anisotropic(_) | Shape::Transmission { .. } => 1.0,
             _ => self.material.normals().unshadowed(frame.ns, wi),
         };
         (value * (arriving * cos.abs() / wi.dot(self.frame.ns).abs().max(1e-6)), pdf)

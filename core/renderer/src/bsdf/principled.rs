@@ -6,7 +6,7 @@ use super::lobe::Lobe;
 use super::normals::Layers;
 use super::oren_nayar::LEAST_ROUGHNESS;
 use super::reflection::{Layer, Metal, Roughness};
-use super::{LobeList, LobeSet, fresnel};
+use super::{LobeList, LobeSet, anisotropy, fresnel};
 use crate::color::Rgb;
 use crate::scene::record::PrincipledRecord;
 
@@ -19,6 +19,15 @@ pub(super) const LOBES: usize = 7;
 /// Which of its lobes, by their slots, are coat and sheen.
 const COAT: u8 = 0;
 const SHEEN: u8 = 6;
+
+/// Those whose microfacets may have two alphas.
+const METAL: u8 = 1;
+const SPECULAR: u8 = 4;
+
+/// True for the slots of lobes that are anisotropic where the BSDF is.
+pub(super) const fn is_anisotropic(slot: u8) -> bool {
+    matches!(slot, METAL | SPECULAR)
+}
 
 /// What of the `layers` belongs to the lobe of a slot.
 pub(super) const fn layer(layers: Layers<u8>, slot: u8) -> u8 {
@@ -40,6 +49,10 @@ pub(super) struct Principled {
     coat: Option<Coat>,
     metallic: f32,
     metal: Metal,
+    /// Of metal and specular layer.
+    rough: Roughness,
+    /// Of the tangent (turns).
+    rotation: f32,
     transmission: f32,
     glass: Glass,
     /// `None` where the index is exactly 1.
@@ -66,7 +79,8 @@ struct Coat {
 impl Principled {
     /// From sockets already within their ranges.
     pub(super) fn new(record: &PrincipledRecord) -> Self {
-        let rough = Roughness::new(record.roughness, record.multiscatter);
+        let plain = Roughness::new(record.roughness, record.multiscatter);
+        let rough = plain.stretched(anisotropy::principled_factors(record.anisotropic));
         let ior = record.ior;
         let plain_f0 = fresnel::f0_from_ior(ior);
         let (mut f0, mut eta) = (plain_f0, ior);
@@ -103,13 +117,15 @@ impl Principled {
                 f0: record.base_color,
                 dip: fresnel::metal_dip(record.base_color, record.specular_tint.map(|c| c.min(1.0))),
             },
+            rough,
+            rotation: record.anisotropic_rotation,
             transmission: record.transmission_weight,
             glass: Glass {
                 ior,
                 f0: tinted(plain_f0),
                 reflection_tint: Rgb::WHITE,
                 transmission_tint: record.base_color.map(f32::sqrt),
-                rough,
+                rough: plain,
             },
             specular: (eta != 1.0).then(|| Layer { eta, f0: tinted(f0), rough }),
         }
@@ -135,6 +151,11 @@ impl Principled {
         (self.coat.is_some() || self.sheen.is_some()) && !self.emission.is_black()
     }
 
+    /// The alphas along a tangent and across it, where they differ, and the turns of the tangent.
+    pub(super) fn anisotropy(&self) -> Option<([f32; 2], f32)> {
+        self.rough.pair.map(|alpha| (alpha, self.rotation))
+    }
+
     /// Shares of metal, glass and the layered diffuse base, without the coat.
     fn shares(&self) -> [f32; 3] {
         let rest = 1.0 - self.metallic;
@@ -154,7 +175,7 @@ impl Principled {
         }
         let [metal, glass, base] = self.shares();
         if metal > NEGLIGIBLE {
-            set = set | self.glass.rough.reflection_class();
+            set = set | self.rough.reflection_class();
         }
         if glass > NEGLIGIBLE {
             set = set | self.glass.classes();
@@ -186,9 +207,14 @@ impl Principled {
         {
             tint += layer.f0 * coat.weight;
         }
+        let [metal, glass, base] = self.shares();
+        if self.rough.reflection_class() == LobeSet::ROUGH {
+            tint += self.metal.f0 * metal;
+        }
         if self.glass.rough.reflection_class() == LobeSet::ROUGH {
-            let [metal, glass, base] = self.shares();
-            tint += self.metal.f0 * metal + self.glass.f0 * glass;
+            tint += self.glass.f0 * glass;
+        }
+        if self.rough.reflection_class() == LobeSet::ROUGH {
             tint += self.specular.map_or(Rgb::BLACK, |layer| layer.f0 * base);
         }
         tint
@@ -209,14 +235,14 @@ impl Principled {
         let [metal, glass, base] = self.shares();
         let weight = weight * below_coat;
         if metal > NEGLIGIBLE {
-            self.metal.push(lobes, weight * metal, self.glass.rough, cos, slot + 1);
+            self.metal.push(lobes, weight * metal, self.rough, cos, slot + METAL);
         }
         if glass > NEGLIGIBLE {
             self.glass.push(lobes, weight * glass, entering, cos, slot + 2);
         }
         if base > NEGLIGIBLE {
             let through = match self.specular {
-                Some(layer) => layer.push(lobes, weight * base, 1.0, cos, slot + 4),
+                Some(layer) => layer.push(lobes, weight * base, 1.0, cos, slot + SPECULAR),
                 None => 1.0,
             };
             if !self.base_color.is_black() {

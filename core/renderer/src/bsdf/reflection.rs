@@ -1,9 +1,9 @@
 //! Lobes of GGX reflection: constant reflectance (Glossy BSDF), metal, and a dielectric layer over something else.
 
-use super::energy_table;
 use super::fresnel;
 use super::lobe::{self, Fresnel, Lobe, Shape};
 use super::{LobeList, LobeSet};
+use super::{anisotropy, energy_table};
 use crate::color::Rgb;
 
 /// Microfacets: Blender's roughness, and the GGX alpha it stands for. Both are zero where the lobe is a delta, so that
@@ -12,8 +12,10 @@ use crate::color::Rgb;
 pub(super) struct Roughness {
     /// Blender's roughness.
     pub(super) roughness: f32,
-    /// GGX alpha.
+    /// GGX alpha; the geometric mean of both where there are two.
     pub(super) alpha: f32,
+    /// The alphas along a tangent and across it, where they differ.
+    pub(super) pair: Option<[f32; 2]>,
     /// Whether light that bounces between microfacets leaves in the end (Blender's Multiscatter GGX) or is lost (GGX).
     multiscatter: bool,
 }
@@ -24,7 +26,14 @@ impl Roughness {
         let alpha = roughness * roughness;
         let is_delta = alpha <= lobe::DELTA_ALPHA;
         let (roughness, alpha) = if is_delta { (0.0, 0.0) } else { (roughness, alpha) };
-        Self { roughness, alpha, multiscatter }
+        Self { roughness, alpha, pair: None, multiscatter }
+    }
+
+    /// The same with `factors` on alpha along a tangent and across it.
+    pub(super) fn stretched(self, factors: [f32; 2]) -> Self {
+        let Some([along, across]) = anisotropy::alphas(self.alpha, factors) else { return self };
+        let alpha = (along * across).sqrt();
+        Self { roughness: alpha.sqrt(), alpha, pair: Some([along, across]), ..self }
     }
 
     /// Factor on the single-scattering albedo `total`, see [`energy_table::compensation`].
@@ -38,9 +47,9 @@ impl Roughness {
         if self.multiscatter { total } else { 1.0 }
     }
 
-    /// Class of a reflection.
+    /// Class of a reflection. Bins of directions blur what is narrow one way.
     pub(super) fn reflection_class(self) -> LobeSet {
-        lobe::reflection_class(self.alpha)
+        lobe::reflection_class(self.pair.map_or(self.alpha, |[along, across]| along.min(across)))
     }
 }
 

@@ -33,7 +33,6 @@ impl Bsdf<'_> {
             half[i] = at_least(h[0] * h[0] + h[1] * h[1] + h[2] * h[2], LEAST_HALF);
         }
         for lobe in self.lobes(LobeSet::ROUGH) {
-            let Shape::Reflection { alpha } = lobe.shape else { continue };
             let own = (lobe.normal != 0).then(|| self.own_frame(lobe));
             let ShadingFrame { ns, ng, .. } = *own.as_ref().unwrap_or(&self.frame);
             let mut cos_i = [0.0; N];
@@ -43,7 +42,11 @@ impl Bsdf<'_> {
                 cos_i[i] = x * ns.x + y * ns.y + z * ns.z;
                 above[i] = (cos_i[i] > 0.0) & (x * ng.x + y * ng.y + z * ng.z > 0.0);
             }
-            let mut values = microfacets(alpha, self.wo.dot(ns), &cos_i, &half);
+            let mut values = match lobe.shape {
+                Shape::Reflection { alpha } => microfacets(alpha, self.wo.dot(ns), &cos_i, &half),
+                Shape::Anisotropic(facets) => facets.values(ns, self.wo, wi, &half),
+                _ => continue,
+            };
             for i in 0..N {
                 values[i] = if above[i] { values[i] } else { 0.0 };
             }

@@ -7,6 +7,9 @@ use crate::scene::record::{ClosureRecord, PrincipledRecord};
 /// Indices of refraction kept; Blender's sockets allow 0 to 1000.
 const IOR: [f32; 2] = [1e-2, 100.0];
 
+/// Rotations kept (turns), so that a part of a turn is left of them.
+const TURNS: [f32; 2] = [-1e3, 1e3];
+
 /// Largest emission kept, so that sums and products stay finite.
 const BRIGHTEST: f32 = 1e15;
 
@@ -77,11 +80,15 @@ impl Sanitizer {
             ClosureRecord::Emission { radiance } => {
                 ClosureRecord::Emission { radiance: self.color(radiance, BRIGHTEST) }
             }
-            ClosureRecord::Glossy { color, roughness, multiscatter } => ClosureRecord::Glossy {
-                color: self.color(color, 1.0),
-                roughness: self.value(roughness, UNIT),
-                multiscatter,
-            },
+            ClosureRecord::Glossy { color, roughness, anisotropy, rotation, multiscatter } => {
+                ClosureRecord::Glossy {
+                    color: self.color(color, 1.0),
+                    roughness: self.value(roughness, UNIT),
+                    anisotropy: self.value(anisotropy, [-1.0, 1.0]),
+                    rotation: self.value(rotation, TURNS),
+                    multiscatter,
+                }
+            }
             ClosureRecord::Glass { color, roughness, ior, multiscatter } => ClosureRecord::Glass {
                 color: self.color(color, 1.0),
                 roughness: self.value(roughness, UNIT),
@@ -104,6 +111,8 @@ impl Sanitizer {
             metallic: self.value(record.metallic, UNIT),
             roughness: self.value(record.roughness, UNIT),
             multiscatter: record.multiscatter,
+            anisotropic: self.value(record.anisotropic, UNIT),
+            anisotropic_rotation: self.value(record.anisotropic_rotation, TURNS),
             diffuse_roughness: self.value(record.diffuse_roughness, UNIT),
             ior: self.value(record.ior, IOR),
             alpha: self.value(record.alpha, UNIT),

@@ -57,7 +57,18 @@ impl Varying {
     /// The material as it is where the program gave `registers` and its normals are `normals`.
     #[must_use]
     pub(super) fn material(&self, registers: &Registers, normals: &[Vec3]) -> PreparedMaterial {
-        PreparedMaterial::at_hit(&self.closures_with(registers), self.normals.at(normals))
+        let tangents = self.tangents(registers);
+        PreparedMaterial::at_hit(&self.closures_with(registers), self.normals.at(normals), &tangents)
+    }
+
+    /// By closure, 0 where it has none; empty where none has.
+    fn tangents(&self, registers: &Registers) -> SmallVec<[Vec3; 2]> {
+        let mut tangents = SmallVec::new();
+        for record in &self.program.tangents {
+            tangents.resize(self.closures.len(), Vec3::ZERO);
+            tangents[record.closure] = registers[record.register as usize].v.truncate();
+        }
+        tangents
     }
 
     /// The results that are shading normals, the surface's own first; `None` is the mesh's. Where there are several, closures
@@ -84,6 +95,8 @@ impl Varying {
             for output in &self.program.outputs {
                 let value = match output.input {
                     Input::Roughness | Input::DiffuseRoughness | Input::CoatRoughness => roughness,
+                    // The wider the lobes, the rounder: both together have all classes between them.
+                    Input::Anisotropic | Input::Anisotropy => 1.0 - roughness,
                     Input::Ior | Input::CoatIor => 1.5,
                     _ => 0.5,
                 };

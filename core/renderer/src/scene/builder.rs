@@ -8,8 +8,8 @@ use glam::{DAffine3, DMat4, DVec3, Vec3};
 use super::equipment::{place_camera, place_lamp};
 use super::mesh::{self, MeshArrays, is_step_count};
 use super::record::{
-    CameraRecord, LampProgramRecord, LampRecord, MaterialRecord, ObjectInfo, ObjectLinks, WorldProgramRecord,
-    WorldRecord, matrix, visibility,
+    CameraRecord, LampProgramRecord, LampRecord, MaterialRecord, ObjectInfo, ObjectLinks, ProgramRecord,
+    WorldProgramRecord, WorldRecord, matrix, visibility,
 };
 use super::{
     LARGEST, Lamp, LampProgram, Material, MaterialProgram, Mesh, Object, Problem, Scene, SceneSpace, World,
@@ -393,13 +393,17 @@ fn checked_material(record: MaterialRecord, textures: usize) -> Result<Material,
     if let Some(normal) = record.normals.iter().find(|normal| normal.closure >= closures.len()) {
         return Err(fault(format!("it has a normal for closure {} of {}", normal.closure, closures.len())));
     }
+    if let Some(tangent) = record.tangents.iter().find(|tangent| tangent.closure >= closures.len()) {
+        return Err(fault(format!("it has a tangent for closure {} of {}", tangent.closure, closures.len())));
+    }
     let normals = record.normals.iter().map(|normal| normal.register).chain(record.normal);
-    let registers = record.outputs.iter().map(|output| output.register).chain(normals);
+    let tangents = record.tangents.iter().map(|tangent| tangent.register);
+    let registers = record.outputs.iter().map(|output| output.register).chain(normals).chain(tangents);
     if let Some(register) = registers.into_iter().find(|&register| register as usize >= program.len()) {
         return Err(fault(format!("its program has no register {register}")));
     }
-    let (outputs, normal, normals) = (record.outputs, record.normal, record.normals);
-    let program = MaterialProgram { program, outputs, normal, normals };
+    let ProgramRecord { outputs, normal, normals, tangents, .. } = record;
+    let program = MaterialProgram { program, outputs, normal, normals, tangents };
     Ok(Material { name, closures, program: Some(program), absorption })
 }
 

@@ -12,6 +12,7 @@ mod lens;
 mod links;
 mod mesh;
 mod motion;
+mod object_info;
 mod projection;
 pub mod record;
 
@@ -31,7 +32,7 @@ pub use record::{LampShape, ObjectInfo, visibility};
 
 use crate::color::Rgb;
 use crate::shader::{Program, Register, Texture};
-use record::{NormalRecord, OutputRecord, WeightedClosure};
+use record::{NormalRecord, OutputRecord, TangentRecord, WeightedClosure};
 
 /// Largest length that is worked with: its square is a number in f32 too.
 const LARGEST: f64 = 1e18;
@@ -194,6 +195,8 @@ pub struct MaterialProgram {
     pub normal: Option<Register>,
     /// Closures with a shading normal of their own.
     pub normals: Vec<NormalRecord>,
+    /// Tangents of closures that are anisotropic.
+    pub tangents: Vec<TangentRecord>,
 }
 
 /// A lamp in scene space.

@@ -1,7 +1,7 @@
 //! Records a host hands over: world space, metres and watts, one per Blender thing. They are plain data; what is wrong
 //! with them is found by [`super::SceneBuilder`].
 
-use glam::{DMat4, Vec4};
+use glam::DMat4;
 use serde::Deserialize;
 
 use crate::color::Rgb;
@@ -10,6 +10,7 @@ use crate::shader::{Instruction, Register};
 pub use super::lamp::{LampProgramRecord, LampRecord, LampShape};
 pub use super::lens::LensRecord;
 pub use super::links::{LightLinks, ObjectLinks};
+pub use super::object_info::{ObjectAttribute, ObjectInfo};
 pub use super::projection::Projection;
 
 /// Ray kinds an object can be hidden from; the bits are Embree's ray mask.
@@ -76,6 +77,12 @@ pub enum ClosureRecord {
         color: Rgb,
         /// Blender's roughness, the square root of GGX alpha.
         roughness: f32,
+        /// Blender's anisotropy, -1 to 1: alpha is larger along the tangent below 0, across it above.
+        #[serde(default)]
+        anisotropy: f32,
+        /// Turns of the tangent about the normal.
+        #[serde(default)]
+        rotation: f32,
         /// Whether light that bounces between microfacets leaves in the end (Blender's Multiscatter GGX) or is lost (GGX).
         #[serde(default = "is_multiscatter")]
         multiscatter: bool,
@@ -143,6 +150,8 @@ pub struct PrincipledRecord {
     pub metallic: f32,
     pub roughness: f32,
     pub multiscatter: bool,
+    pub anisotropic: f32,
+    pub anisotropic_rotation: f32,
     pub diffuse_roughness: f32,
     pub ior: f32,
     pub alpha: f32,
@@ -167,6 +176,8 @@ impl PrincipledRecord {
             Input::BaseColor => Color(&mut self.base_color),
             Input::Metallic => Number(&mut self.metallic),
             Input::Roughness => Number(&mut self.roughness),
+            Input::Anisotropic => Number(&mut self.anisotropic),
+            Input::AnisotropicRotation => Number(&mut self.anisotropic_rotation),
             Input::DiffuseRoughness => Number(&mut self.diffuse_roughness),
             Input::Ior => Number(&mut self.ior),
             Input::Alpha => Number(&mut self.alpha),
@@ -182,7 +193,9 @@ impl PrincipledRecord {
             Input::SheenWeight => Number(&mut self.sheen_weight),
             Input::SheenRoughness => Number(&mut self.sheen_roughness),
             Input::SheenTint => Color(&mut self.sheen_tint),
-            Input::Weight | Input::Color | Input::Radiance => return None,
+            Input::Weight | Input::Color | Input::Radiance | Input::Anisotropy | Input::Rotation => {
+                return None;
+            }
         })
     }
 }
@@ -194,6 +207,8 @@ impl Default for PrincipledRecord {
             metallic: 0.0,
             roughness: 0.5,
             multiscatter: true,
+            anisotropic: 0.0,
+            anisotropic_rotation: 0.0,
             diffuse_roughness: 0.0,
             ior: 1.5,
             alpha: 1.0,
@@ -252,6 +267,9 @@ pub struct ProgramRecord {
     /// Closures with a shading normal of their own.
     #[serde(default)]
     pub normals: Vec<NormalRecord>,
+    /// Tangents of closures that are anisotropic.
+    #[serde(default)]
+    pub tangents: Vec<TangentRecord>,
 }
 
 /// A result that is the shading normal (world space) of one closure.
@@ -262,6 +280,17 @@ pub struct NormalRecord {
     pub closure: usize,
     /// True: of its coat alone; false: of all but its coat.
     pub coat: bool,
+    /// The result.
+    pub register: Register,
+}
+
+/// A result that is the tangent (world space, of any length) that the reflections of a closure are anisotropic about; they are
+/// isotropic where it is 0 or along the normal.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TangentRecord {
+    /// Index of the closure.
+    pub closure: usize,
     /// The result.
     pub register: Register,
 }
@@ -287,6 +316,10 @@ pub enum Input {
     Color,
     Radiance,
     Roughness,
+    Anisotropy,
+    Rotation,
+    Anisotropic,
+    AnisotropicRotation,
     DiffuseRoughness,
     Ior,
     BaseColor,
@@ -334,6 +367,8 @@ impl WeightedClosure {
                 | C::Sheen { roughness, .. },
                 Input::Roughness,
             ) => Some(Number(roughness)),
+            (C::Glossy { anisotropy, .. }, Input::Anisotropy) => Some(Number(anisotropy)),
+            (C::Glossy { rotation, .. }, Input::Rotation) => Some(Number(rotation)),
             (C::Glass { ior, .. } | C::Refraction { ior, .. }, Input::Ior) => Some(Number(ior)),
             (C::Principled(record), _) => record.input_mut(input),
             _ => None,
@@ -357,45 +392,6 @@ impl MaterialRecord {
         let closure = ClosureRecord::Diffuse { color: Rgb::splat(0.8), roughness: 0.0 };
         let closures = vec![WeightedClosure { weight: Rgb::WHITE, closure }];
         Self { name: "Default".into(), closures, program: None, absorption: Rgb::BLACK }
-    }
-}
-
-/// What materials may ask about an object.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct ObjectInfo {
-    /// Its color in the viewport, with alpha.
-    pub color: [f32; 4],
-    /// Its pass index.
-    pub index: f32,
-    /// A random number, 0 to 1.
-    pub random: f32,
-    /// Values that it or its instancer have by name.
-    pub attributes: Vec<ObjectAttribute>,
-}
-
-/// A value that an object, or its instancer, has by name.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ObjectAttribute {
-    /// The name's number in programs.
-    pub attribute: u32,
-    /// The value, with alpha.
-    pub value: [f32; 4],
-}
-
-impl Default for ObjectInfo {
-    fn default() -> Self {
-        Self { color: [1.0; 4], index: 0.0, random: 0.0, attributes: Vec::new() }
-    }
-}
-
-impl ObjectInfo {
-    /// The value of a number's name; 0 where there is none.
-    #[must_use]
-    pub fn attribute(&self, number: u32) -> Vec4 {
-        let known = self.attributes.iter().find(|known| known.attribute == number);
-        known.map_or(Vec4::ZERO, |known| Vec4::from_array(known.value))
     }
 }
 

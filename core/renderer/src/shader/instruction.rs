@@ -88,6 +88,16 @@ pub enum Quantity {
     IsTransmission,
 }
 
+/// An axis of an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "axes have no other names")]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
 /// The space of a normal map's colors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -195,8 +205,10 @@ pub enum Instruction {
     Fresnel { ior: Register, normal: Register },
     /// Blender's Layer Weight: its Fresnel (`facing` false) or Facing output.
     LayerWeight { blend: Register, normal: Register, facing: bool },
-    /// The direction around the object's z axis along the surface, from the place within the object's box (0 to 1).
-    Tangent { generated: Register },
+    /// The direction around an axis of the object along the surface, from the place within the object's box (0 to 1).
+    Tangent { generated: Register, axis: Axis },
+    /// The direction along u of a UV map; 0 where it has none.
+    UvTangent { attribute: u32 },
     /// A normal from the color of a normal map; `attribute` is the UV map of a tangent space.
     NormalMap { color: Register, strength: Register, space: NormalSpace, attribute: u32 },
     /// A normal tilted by a height (m) that is known here and `filter_width` widths of the ray aside.
@@ -225,6 +237,7 @@ impl Instruction {
             Self::Constant { .. }
             | Self::Attribute { .. }
             | Self::ObjectAttribute { .. }
+            | Self::UvTangent { .. }
             | Self::Geometry { .. } => smallvec![],
             Self::Transform { vector, .. }
             | Self::Normalize { vector }
@@ -257,7 +270,7 @@ impl Instruction {
             | Self::Curves { color, .. } => smallvec![color],
             Self::Ramp { factor, .. } => smallvec![factor],
             Self::Fresnel { ior, normal } => smallvec![ior, normal],
-            Self::Tangent { generated } => smallvec![generated],
+            Self::Tangent { generated, .. } => smallvec![generated],
             Self::LayerWeight { blend, normal, .. } => smallvec![blend, normal],
             Self::NormalMap { color, strength, .. } => smallvec![color, strength],
             Self::Bump { strength, distance, height, height_x, height_y, normal, .. } => {

@@ -24,7 +24,7 @@ use smallvec::SmallVec;
 
 pub use arithmetic::{BlendMode, MathFunction, VectorFunction};
 pub use cell_hash::CellHash;
-pub use instruction::{Aside, Instruction, MOST_INSTRUCTIONS, NormalSpace, Quantity, Register, Tile};
+pub use instruction::{Aside, Axis, Instruction, MOST_INSTRUCTIONS, NormalSpace, Quantity, Register, Tile};
 pub use noise::Fractal;
 pub use panorama::{Projection, around};
 pub use pattern::{GradientShape, Pattern, VoronoiOutput, WaveDirection, WaveProfile};

@@ -110,6 +110,7 @@ fn execute(
         Instruction::Fresnel { .. }
         | Instruction::LayerWeight { .. }
         | Instruction::Tangent { .. }
+        | Instruction::UvTangent { .. }
         | Instruction::NormalMap { .. }
         | Instruction::Bump { .. } => at_surface(instruction, &r, point),
         _ => colors(instruction, &r),
@@ -214,7 +215,10 @@ fn at_surface(instruction: &Instruction, r: &Operands<'_>, point: &impl Point) -
         Instruction::LayerWeight { blend, normal, facing } => {
             Value::number(surface::layer_weight(point, r.number(blend), r.vector(normal), facing))
         }
-        Instruction::Tangent { generated } => Value::vector(surface::tangent(point, r.vector(generated))),
+        Instruction::Tangent { generated, axis } => {
+            Value::vector(surface::tangent(point, r.vector(generated), axis))
+        }
+        Instruction::UvTangent { attribute } => Value::vector(surface::uv_tangent(point, attribute)),
         Instruction::NormalMap { color, strength, space, attribute } => {
             Value::vector(surface::normal_map(point, r.vector(color), r.number(strength), space, attribute))
         }

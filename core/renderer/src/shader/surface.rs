@@ -3,7 +3,7 @@
 use glam::{Vec3, Vec4};
 
 use super::Point;
-use super::instruction::{Aside, NormalSpace, Quantity};
+use super::instruction::{Aside, Axis, NormalSpace, Quantity};
 
 /// What a bump is made of.
 pub(super) struct BumpHeights {
@@ -67,12 +67,30 @@ pub(super) fn normal_map(
     (ns + (mapped - ns) * strength).try_normalize().unwrap_or(ns)
 }
 
-/// The Tangent of the Geometry node: around the object's z axis, along the surface.
-pub(super) fn tangent(point: &impl Point, generated: Vec3) -> Vec3 {
-    let around = point.world_normal(Vec3::new(0.5 - generated.y, generated.x - 0.5, 0.0));
+/// The Tangent of the Geometry node, and the radial ones of the Tangent node: around an axis of the object, along the surface.
+pub(super) fn tangent(point: &impl Point, generated: Vec3, axis: Axis) -> Vec3 {
+    let p = generated - Vec3::splat(0.5);
+    along_surface(
+        point,
+        match axis {
+            Axis::X => Vec3::new(0.0, -p.z, p.y),
+            Axis::Y => Vec3::new(-p.z, 0.0, p.x),
+            Axis::Z => Vec3::new(-p.y, p.x, 0.0),
+        },
+    )
+}
+
+/// The Tangent node's of a UV map.
+pub(super) fn uv_tangent(point: &impl Point, attribute: u32) -> Vec3 {
+    point.tangents(attribute).map_or(Vec3::ZERO, |[tangent, ..]| along_surface(point, tangent))
+}
+
+/// A direction of the object's space laid on the surface; 0 along the normal.
+fn along_surface(point: &impl Point, direction: Vec3) -> Vec3 {
+    let along = point.world_normal(direction);
     let back = is_back(point);
-    let (around, ns) = (if back { -around } else { around }, ask(point, Quantity::Normal));
-    ns.cross(around.cross(ns).normalize_or_zero())
+    let (along, ns) = (if back { -along } else { along }, ask(point, Quantity::Normal));
+    ns.cross(along.cross(ns).normalize_or_zero())
 }
 
 /// Fresnel's equations for unpolarized light: the share reflected at `cos` by an interface of relative index `eta`.

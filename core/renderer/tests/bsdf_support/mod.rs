@@ -37,7 +37,13 @@ pub(crate) fn rough_diffuse(color: f32, roughness: f32) -> ClosureRecord {
 }
 
 pub(crate) fn glossy(color: f32, roughness: f32) -> ClosureRecord {
-    ClosureRecord::Glossy { color: Rgb::splat(color), roughness, multiscatter: true }
+    ClosureRecord::Glossy {
+        color: Rgb::splat(color),
+        roughness,
+        anisotropy: 0.0,
+        rotation: 0.0,
+        multiscatter: true,
+    }
 }
 
 pub(crate) fn glass(color: f32, roughness: f32, ior: f32) -> ClosureRecord {

@@ -142,7 +142,13 @@ pub(crate) fn emitter(albedo: f32, radiance: f32) -> MaterialRecord {
 
 /// A GGX reflector.
 pub(crate) fn glossy(color: f32, roughness: f32) -> MaterialRecord {
-    material(&[ClosureRecord::Glossy { color: Rgb::splat(color), roughness, multiscatter: true }])
+    material(&[ClosureRecord::Glossy {
+        color: Rgb::splat(color),
+        roughness,
+        anisotropy: 0.0,
+        rotation: 0.0,
+        multiscatter: true,
+    }])
 }
 
 /// A lamp at `position` that shines down.
