@@ -49,6 +49,8 @@ pub(super) enum Shape {
     Sheen(Sheen),
     /// GGX reflection.
     Reflection { alpha: f32 },
+    /// GGX reflection mirrored to the far side: transmission that bends nothing.
+    Mirrored { alpha: f32 },
     /// GGX refraction; `eta` is the index on the far side over that on the viewer's side.
     Transmission { alpha: f32, eta: f32 },
 }
@@ -138,7 +140,7 @@ impl Lobe {
 
     /// True for lobes on the side away from the viewer.
     pub(super) fn is_transmission(&self) -> bool {
-        matches!(self.shape, Shape::Transmission { .. } | Shape::Translucent)
+        matches!(self.shape, Shape::Mirrored { .. } | Shape::Transmission { .. } | Shape::Translucent)
     }
 
     /// Index on the far side over that on the viewer's, where the light crosses; 1 where it stays.
@@ -172,7 +174,8 @@ impl Lobe {
                 let density = sheen.density(frame, wo, wi);
                 (self.weight * (density / cos_i), density)
             }
-            Shape::Reflection { alpha } => {
+            Shape::Reflection { alpha } | Shape::Mirrored { alpha } => {
+                let wi = if self.is_transmission() { mirrored(wi, frame.ns) } else { wi };
                 let h = (wo + wi).normalize_or(frame.ns);
                 let cos_h = wo.dot(h).clamp(0.0, 1.0);
                 let d = ggx::distribution(alpha, frame.ns.cross(h).length_squared().min(1.0));
@@ -217,6 +220,10 @@ impl Lobe {
                 let h = microfacet(alpha);
                 Some((h * (2.0 * wo.dot(h)) - wo).normalize())
             }
+            Shape::Mirrored { alpha } => {
+                let h = microfacet(alpha);
+                Some(mirrored((h * (2.0 * wo.dot(h)) - wo).normalize(), frame.ns))
+            }
             Shape::Transmission { alpha, eta } => fresnel::refract(wo, microfacet(alpha), eta),
         }
     }
@@ -225,4 +232,9 @@ impl Lobe {
     pub(super) fn delta_factor(&self, frame: &ShadingFrame, wo: Vec3) -> Rgb {
         self.factor(wo.dot(frame.ns).clamp(0.0, 1.0))
     }
+}
+
+/// `direction` on the other side of the plane with the unit normal `ns`.
+fn mirrored(direction: Vec3, ns: Vec3) -> Vec3 {
+    direction - ns * (2.0 * direction.dot(ns))
 }

@@ -181,7 +181,9 @@ impl Bsdf<'_> {
                 ShadingFrame { ns, ..self.frame }
             }
             Shape::Sheen(_) => own().bent_below(self.wo),
-            Shape::Reflection { .. } | Shape::Transmission { .. } => own().mirroring_above(self.wo),
+            Shape::Reflection { .. } | Shape::Mirrored { .. } | Shape::Transmission { .. } => {
+                own().mirroring_above(self.wo)
+            }
         }
     }
 
@@ -195,7 +197,7 @@ impl Bsdf<'_> {
         }
         let (value, pdf) = lobe.eval(&frame, self.wo, wi);
         let arriving = match lobe.shape {
-            Shape::Reflection { .. } | Shape::Transmission { .. } => 1.0,
+            Shape::Reflection { .. } | Shape::Mirrored { .. } | Shape::Transmission { .. } => 1.0,
             _ => self.material.normals().unshadowed(frame.ns, wi),
         };
         (value * (arriving * cos.abs() / wi.dot(self.frame.ns).abs().max(1e-6)), pdf)
