@@ -10,7 +10,7 @@ use rgp_renderer::bsdf::{LobeSet, PreparedMaterial};
 use rgp_renderer::color::Rgb;
 use rgp_renderer::scene::record::PrincipledRecord;
 
-const COSINES: [f32; 6] = [1e-4, 0.02, 0.1, 0.3, 0.6, 1.0];
+const COSINES: [f32; 5] = [0.02, 0.1, 0.3, 0.6, 1.0];
 
 fn sheet(roughness: f32, ior: f32, change: impl FnOnce(&mut PrincipledRecord)) -> PreparedMaterial {
     prepared(principled(|p| {
@@ -88,8 +88,7 @@ fn white_sheets_return_everything_and_never_more() {
                     assert!((tabulated - 1.0).abs() < 0.002, "{what}: tabulated {tabulated}");
                     // Half a per cent more is what the tables may be off.
                     let total = straight + sampled_albedo(&bsdf, LobeSet::ALL, RADIANCE, 32);
-                    assert!(total < 1.005, "{what}: {total}");
-                    assert!(total > 0.99 || cos < 0.01, "{what}: {total}");
+                    assert!(total < 1.005 && total > 0.99, "{what}: {total}");
                 }
             }
         }
