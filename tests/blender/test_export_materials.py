@@ -459,28 +459,6 @@ def test_principled_subsurface_keeps_its_albedo(scene, closures, problems, weigh
     assert any("subsurface scattering is approximated" in text for text in problems()) == (weight > 0.0)
 
 
-@pytest.mark.skipif(bpy.app.version < (5, 2), reason="no Thin Wall before Blender 5.2")
-@pytest.mark.parametrize("thin_wall", [False, True])
-def test_thin_walls_scatter_what_is_subsurface_to_both_sides(scene, closures, problems, thin_wall):
-    inputs = {"Subsurface_Weight": 0.4, "Subsurface_Anisotropy": 0.3, "Thin_Wall": thin_wall}
-    record = only(closures(build.surface("ShaderNodeBsdfPrincipled", **inputs)))
-    names = ("thin_wall", "subsurface_weight", "subsurface_anisotropy")
-    assert [record.get(name) for name in names] == (
-        [True, pytest.approx(0.4), pytest.approx(0.3)] if thin_wall else [None] * 3
-    )
-    assert any("subsurface" in text for text in problems()) != thin_wall
-
-
-@pytest.mark.skipif(bpy.app.version < (5, 2), reason="no Thin Wall before Blender 5.2")
-def test_a_thin_wall_here_and_there_is_reported(scene, closures, problems):
-    b_material = build.surface("ShaderNodeBsdfPrincipled")
-    b_tree = b_material.node_tree
-    (b_node,) = (node for node in b_tree.nodes if node.type == "BSDF_PRINCIPLED")
-    build.connect(b_tree, b_tree.nodes.new("ShaderNodeTexNoise"), b_node, "Thin Wall")
-    closures(b_material)
-    assert any("is used for Thin Wall instead" in text for text in problems())
-
-
 @pytest.mark.parametrize("name", ["Anisotropic"])
 def test_principled_inputs_that_are_left_out(scene, closures, problems, name):
     closures(build.surface("ShaderNodeBsdfPrincipled", **{name.replace(" ", "_"): 0.5}))
