@@ -61,11 +61,7 @@ fn tinted_sheets_are_the_sum_of_all_ways_through() {
         for way in 0..40 {
             inside *= left;
             let leaves = inside * (1.0 - r);
-            if way % 2 == 0 {
-                passed += leaves
-            } else {
-                reflected += leaves
-            }
+            *(if way % 2 == 0 { &mut passed } else { &mut reflected }) += leaves;
             inside *= r;
         }
         let bsdf = seen(&material, cos as f32, true);
