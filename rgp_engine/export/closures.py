@@ -38,7 +38,6 @@ _PRINCIPLED = (
 # Inputs that are left out, and do nothing at 0.
 _LEFT_OUT = (
     "Thin Film Thickness",
-    "Thin Wall",
 )
 
 _SUBSURFACE = "subsurface scattering is approximated: light leaves where it enters, as from Diffuse"
@@ -179,9 +178,14 @@ def _emission(folder: Folder, source: Output) -> Closure:
 
 
 def _principled(folder: Folder, source: Output) -> Closure:
-    if folder.constant_value(source.input("Subsurface Weight")) != 0.0:
-        folder.report_node(source.b_node, _SUBSURFACE)
     record: Closure = {"kind": "principled"}
+    thin_wall = source.find("Thin Wall")  # not before Blender 5.2
+    if thin_wall is not None and folder.constant_value(thin_wall) != 0.0:
+        record["thin_wall"] = True
+        for identifier in ("Subsurface Weight", "Subsurface Anisotropy"):
+            record[identifier.lower().replace(" ", "_")] = folder.value(source.input(identifier))
+    elif folder.constant_value(source.input("Subsurface Weight")) != 0.0:
+        folder.report_node(source.b_node, _SUBSURFACE)
     for identifier, is_color in _PRINCIPLED:
         entry = source.input(identifier)
         name = identifier.lower().replace(" ", "_")

@@ -168,8 +168,8 @@ fn any_closure() -> impl Strategy<Value = ClosureRecord> {
         ),
         (any_color(), any_value(), any_value())
             .prop_map(|(color, roughness, ior)| ClosureRecord::Refraction { color, roughness, ior }),
-        (prop::array::uniform5(any_color()), prop::array::uniform9(any_value()), any::<bool>()).prop_map(
-            |(c, v, multiscatter)| {
+        (prop::array::uniform5(any_color()), prop::array::uniform9(any_value()), any::<[bool; 2]>())
+            .prop_map(|(c, v, [multiscatter, thin_wall])| {
                 ClosureRecord::Principled(PrincipledRecord {
                     base_color: c[0],
                     specular_tint: c[1],
@@ -185,6 +185,9 @@ fn any_closure() -> impl Strategy<Value = ClosureRecord> {
                     alpha: v[3],
                     specular_ior_level: v[4],
                     transmission_weight: v[5],
+                    thin_wall,
+                    subsurface_weight: v[6],
+                    subsurface_anisotropy: v[7],
                     coat_weight: v[6],
                     coat_roughness: v[7],
                     coat_ior: v[8],
@@ -193,8 +196,7 @@ fn any_closure() -> impl Strategy<Value = ClosureRecord> {
                     sheen_roughness: v[2],
                     sheen_tint: c[4],
                 })
-            }
-        ),
+            }),
     ]
 }
 

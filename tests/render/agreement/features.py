@@ -18,6 +18,7 @@ from tests.render import (
     node_scene,
     panorama_cases,
     path_cases,
+    thin_wall_cases,
     world_cases,
 )
 
@@ -42,6 +43,10 @@ def features() -> list[Feature]:
         ),
         *(Feature(f"world/{name}", partial(world_cases.build, name)) for name in world_cases.WORLDS),
         *(Feature(f"path/{name}", partial(path_cases.build, name)) for name in path_cases.PATHS),
+        *(
+            Feature(f"thin_wall/{name}", partial(thin_wall_cases.build, name))
+            for name in thin_wall_cases.THIN_WALLS
+        ),
         *(Feature(f"motion/{name}", partial(motion_cases.build, name)) for name in motion_cases.MOTIONS),
         *(
             Feature(f"node/{name}", partial(node_scene.node_scene, case), box_filter=True)

@@ -20,6 +20,7 @@ TITLES = {
     "world": "Worlds that differ from direction to direction",
     "material": "Shaders, under an even world and under a square lamp",
     "path": "Ways of light",
+    "thin_wall": "Thin walls",
     "motion": "Motion blur",
     "node": "Nodes",
     "linking": "Light linking and shadow linking",

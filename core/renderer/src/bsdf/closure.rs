@@ -24,6 +24,15 @@ pub(super) struct Part {
     pub(super) anisotropy: Option<Anisotropy>,
 }
 
+/// What a closure does besides scattering.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Unscattered {
+    /// Radiance emitted towards the viewer (W·m⁻²·sr⁻¹).
+    pub(super) emission: Rgb,
+    /// Share of light that passes straight through.
+    pub(super) straight: Rgb,
+}
+
 /// A closure that makes lobes; transparency, constant emission and Lambert about the frame's normal are merged in the material.
 #[derive(Clone, Debug)]
 pub(super) enum PreparedClosure {
@@ -52,7 +61,7 @@ pub(super) enum PreparedClosure {
 }
 
 impl PreparedClosure {
-    /// Adds the lobes towards a viewer at `cos` from the normals; returns the radiance emitted towards it.
+    /// Adds the lobes towards a viewer at `cos` from the normals; returns what else comes from there.
     pub(super) fn push(
         &self,
         lobes: &mut LobeList,
@@ -60,13 +69,13 @@ impl PreparedClosure {
         entering: bool,
         cos: Layers<f32>,
         slot: u8,
-    ) -> Rgb {
+    ) -> Unscattered {
         match self {
             Self::Diffuse { color, roughness } => {
                 lobes.push(Lobe::diffuse(weight * *color, *color, *roughness, cos.base, slot));
             }
             Self::Glossy { color, rough, .. } => {
-                reflection::push_constant(lobes, weight, *color, *rough, cos.base, slot);
+                lobes.push(reflection::constant(weight * *color, *color, *rough, cos.base, slot));
             }
             Self::Glass(glass) => glass.push(lobes, weight, entering, cos.base, slot),
             Self::Refraction { rough, ior } => {
@@ -76,11 +85,10 @@ impl PreparedClosure {
             Self::Translucent => lobes.push(Lobe::translucent(weight, slot)),
             Self::Sheen { roughness } => lobes.push(Lobe::sheen(weight, *roughness, cos.sheen, slot)),
             Self::Principled(principled) => {
-                let seen = principled.push(lobes, weight, entering, cos, slot);
-                return weight * seen * principled.emission;
+                return principled.push(lobes, weight, entering, cos, slot);
             }
         }
-        Rgb::BLACK
+        Unscattered::default()
     }
 
     /// True when what is emitted below a coat depends on the direction.
@@ -113,7 +121,7 @@ impl PreparedClosure {
         }
     }
 
-    /// True when light is refracted.
+    /// True when light is refracted, or spread by what it passes.
     pub(super) fn transmits(&self) -> bool {
         match self {
             Self::Diffuse { .. } | Self::Glossy { .. } | Self::Translucent | Self::Sheen { .. } => false,

@@ -52,6 +52,8 @@ pub(super) enum Shape {
     Reflection { alpha: f32 },
     /// GGX reflection whose alpha is not the same in all directions.
     Anisotropic(Anisotropic),
+    /// GGX reflection mirrored to the far side: transmission that bends nothing.
+    Mirrored { alpha: f32 },
     /// GGX refraction; `eta` is the index on the far side over that on the viewer's side.
     Transmission { alpha: f32, eta: f32 },
 }
@@ -141,7 +143,7 @@ impl Lobe {
 
     /// True for lobes on the side away from the viewer.
     pub(super) fn is_transmission(&self) -> bool {
-        matches!(self.shape, Shape::Transmission { .. } | Shape::Translucent)
+        matches!(self.shape, Shape::Mirrored { .. } | Shape::Transmission { .. } | Shape::Translucent)
     }
 
     /// Index on the far side over that on the viewer's, where the light crosses; 1 where it stays.
@@ -175,7 +177,8 @@ impl Lobe {
                 let density = sheen.density(frame, wo, wi);
                 (self.weight * (density / cos_i), density)
             }
-            Shape::Reflection { alpha } => {
+            Shape::Reflection { alpha } | Shape::Mirrored { alpha } => {
+                let wi = if self.is_transmission() { mirrored(wi, frame.ns) } else { wi };
                 let h = (wo + wi).normalize_or(frame.ns);
                 let cos_h = wo.dot(h).clamp(0.0, 1.0);
                 let d = ggx::distribution(alpha, frame.ns.cross(h).length_squared().min(1.0));
@@ -208,7 +211,7 @@ impl Lobe {
 
     /// A direction of this lobe. For a delta lobe it is the only one.
     pub(super) fn sample(&self, frame: &ShadingFrame, wo: Vec3, u: [f32; 2]) -> Option<Vec3> {
-        let mirrored = |h: Vec3| Some((h * (2.0 * wo.dot(h)) - wo).normalize());
+        let reflected = |h: Vec3| Some((h * (2.0 * wo.dot(h)) - wo).normalize());
         let microfacet = |alpha: f32| {
             if self.class == LobeSet::DELTA {
                 return frame.ns;
@@ -222,8 +225,9 @@ impl Lobe {
             }
             Shape::Translucent => Some(-Frame::new(frame.ns).from_local(cosine_hemisphere(u))),
             Shape::Sheen(sheen) => Some(sheen.sample(frame, wo, u)),
-            Shape::Reflection { alpha } => mirrored(microfacet(alpha)),
-            Shape::Anisotropic(facets) => mirrored(facets.sample_visible_normal(frame.ns, wo, u)),
+            Shape::Reflection { alpha } => reflected(microfacet(alpha)),
+            Shape::Anisotropic(facets) => reflected(facets.sample_visible_normal(frame.ns, wo, u)),
+            Shape::Mirrored { alpha } => reflected(microfacet(alpha)).map(|wi| mirrored(wi, frame.ns)),
             Shape::Transmission { alpha, eta } => fresnel::refract(wo, microfacet(alpha), eta),
         }
     }
@@ -232,4 +236,9 @@ impl Lobe {
     pub(super) fn delta_factor(&self, frame: &ShadingFrame, wo: Vec3) -> Rgb {
         self.factor(wo.dot(frame.ns).clamp(0.0, 1.0))
     }
+}
+
+/// `direction` on the other side of the plane with the unit normal `ns`.
+fn mirrored(direction: Vec3, ns: Vec3) -> Vec3 {
+    direction - ns * (2.0 * direction.dot(ns))
 }

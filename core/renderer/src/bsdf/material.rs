@@ -116,7 +116,7 @@ impl PreparedMaterial {
             let mut extreme = Self::at_hit(&extreme, Normals::default(), &[]);
             extreme.finish();
             self.classes = self.classes | extreme.classes;
-            self.transparency += extreme.straight;
+            self.transparency += extreme.transparency;
             self.refracts |= extreme.refracts;
             self.etas.extend(extreme.etas);
             // Where the typical emission is none, such as that of a mask, there may be some all the same.
@@ -203,7 +203,7 @@ impl PreparedMaterial {
         for part in &self.closures {
             self.classes = self.classes | part.closure.classes();
         }
-        self.transparency = self.straight;
+        self.transparency = self.bsdf(Vec3::Z, Vec3::Z, Vec3::Z).transparency;
         self.refracts = self.closures.iter().any(|part| part.closure.transmits());
         self.etas = self.closures.iter().flat_map(|part| part.closure.etas()).collect();
         if self.closures.is_empty() && self.straight.is_black() && self.holdout == 0.0 {
@@ -398,19 +398,20 @@ impl<'a> MaterialRef<'a> {
                 if material.is_in_part_diffuse() { frame.bent_below(wo) } else { frame.mirroring_above(wo) };
         }
         let cos = wo.dot(frame.ns).clamp(0.0, 1.0);
-        let (mut emission, transparency) = (material.bare_emission, material.straight);
+        let (mut emission, mut transparency) = (material.bare_emission, material.straight);
         let mut lobes = SmallVec::new();
         if !material.lambert.is_black() {
             lobes.push(Lobe::lambert(material.lambert, 0));
         }
         for (slot, part) in (1..).step_by(principled::LOBES).zip(&material.closures) {
             let Part { weight, closure, normals, anisotropy } = part;
-            let first = lobes.len();
-            if normals.base == 0 {
-                emission += closure.push(&mut lobes, *weight, frame.entering, Layers::all(cos), slot);
-            } else {
-                let cos = material.normals.cosines(*normals, wo, &frame);
-                emission += closure.push(&mut lobes, *weight, frame.entering, cos, slot);
+            let (first, is_shared) = (lobes.len(), normals.base == 0);
+            let cos =
+                if is_shared { Layers::all(cos) } else { material.normals.cosines(*normals, wo, &frame) };
+            let unscattered = closure.push(&mut lobes, *weight, frame.entering, cos, slot);
+            emission += unscattered.emission;
+            transparency += unscattered.straight;
+            if !is_shared {
                 for lobe in &mut lobes[first..] {
                     lobe.normal = principled::layer(*normals, lobe.slot - slot);
                 }
@@ -423,6 +424,10 @@ impl<'a> MaterialRef<'a> {
         if material.left_out.lobes != LobeSet::EMPTY {
             lobes.retain(|lobe: &mut Lobe| !material.left_out.lobes.intersects(lobe.class));
         }
+        if material.left_out.transparency {
+            transparency = Rgb::BLACK;
+        }
+        transparency = transparency.map(|c| c.min(1.0));
         Bsdf { material: self, wo, lobes, emission, transparency, frame }
     }
 }

@@ -34,6 +34,7 @@ mod rough;
 mod sanitize;
 mod sheen;
 mod sheen_table;
+mod sheet;
 mod table;
 mod varying;
 
@@ -52,7 +53,7 @@ pub use table::MaterialTable;
 pub use varying::Varying;
 
 /// Most lobes at one hit.
-const MAX_LOBES: usize = 16;
+const MAX_LOBES: usize = 18;
 
 /// Most surfaces have one lobe or two; a hit is copied around too often to carry room for all.
 type LobeList = SmallVec<[Lobe; 2]>;

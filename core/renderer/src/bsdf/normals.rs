@@ -186,7 +186,10 @@ impl Bsdf<'_> {
                 ShadingFrame { ns, ..self.frame }
             }
             Shape::Sheen(_) => own().bent_below(self.wo),
-            Shape::Reflection { .. } | Shape::Anisotropic(_) | Shape::Transmission { .. } => {
+            Shape::Reflection { .. }
+            | Shape::Anisotropic(_)
+            | Shape::Mirrored { .. }
+            | Shape::Transmission { .. } => {
                 own().mirroring_above(self.wo)
             }
         }
@@ -202,7 +205,10 @@ impl Bsdf<'_> {
         }
         let (value, pdf) = lobe.eval(&frame, self.wo, wi);
         let arriving = match lobe.shape {
-            Shape::Reflection { .. } | Shape::Anisotropic(_) | Shape::Transmission { .. } => 1.0,
+            Shape::Reflection { .. }
+            | Shape::Anisotropic(_)
+            | Shape::Mirrored { .. }
+            | Shape::Transmission { .. } => 1.0,
             _ => self.material.normals().unshadowed(frame.ns, wi),
         };
         (value * (arriving * cos.abs() / wi.dot(self.frame.ns).abs().max(1e-6)), pdf)

@@ -1,11 +1,13 @@
 //! Blender's Principled BSDF (Blender 4.0 and later) as a stack of lobes, from the top: sheen, coat, metal, glass, specular
 //! layer, diffuse. Every layer dims those below by an estimate of what it reflects.
 
+use super::closure::Unscattered;
 use super::dielectric::Glass;
 use super::lobe::Lobe;
 use super::normals::Layers;
 use super::oren_nayar::LEAST_ROUGHNESS;
 use super::reflection::{Layer, Metal, Roughness};
+use super::sheet::Sheet;
 use super::{LobeList, LobeSet, anisotropy, fresnel};
 use crate::color::Rgb;
 use crate::scene::record::PrincipledRecord;
@@ -14,7 +16,7 @@ use crate::scene::record::PrincipledRecord;
 const NEGLIGIBLE: f32 = 1e-5;
 
 /// Most lobes one Principled BSDF makes.
-pub(super) const LOBES: usize = 7;
+pub(super) const LOBES: usize = 8;
 
 /// Which of its lobes, by their slots, are coat and sheen.
 const COAT: u8 = 0;
@@ -28,6 +30,8 @@ const SPECULAR: u8 = 4;
 pub(super) const fn is_anisotropic(slot: u8) -> bool {
     matches!(slot, METAL | SPECULAR)
 }
+/// The slot of what of the diffuse base leaves on the other side.
+const TRANSLUCENT: u8 = 7;
 
 /// What of the `layers` belongs to the lobe of a slot.
 pub(super) const fn layer(layers: Layers<u8>, slot: u8) -> u8 {
@@ -55,6 +59,10 @@ pub(super) struct Principled {
     rotation: f32,
     transmission: f32,
     glass: Glass,
+    /// What takes the place of glass in thin walls.
+    sheet: Option<Sheet>,
+    /// Share of the diffuse base that leaves on the other side.
+    translucency: f32,
     /// `None` where the index is exactly 1.
     specular: Option<Layer>,
 }
@@ -127,13 +135,22 @@ impl Principled {
                 transmission_tint: record.base_color.map(f32::sqrt),
                 rough: plain,
             },
+            sheet: record.thin_wall.then(|| {
+                let tint = record.specular_tint.map(|c| c.min(1.0));
+                Sheet::new(ior, tinted(plain_f0), record.base_color, tint, record.roughness)
+            }),
+            translucency: match record.thin_wall {
+                true => record.subsurface_weight * 0.5 * (1.0 + record.subsurface_anisotropy),
+                false => 0.0,
+            },
             specular: (eta != 1.0).then(|| Layer { eta, f0: tinted(f0), rough }),
         }
     }
 
-    /// True when light passes through.
+    /// True when light is refracted, or spread by what it passes.
     pub(super) fn transmits(&self) -> bool {
-        self.metallic < 1.0 && self.transmission > NEGLIGIBLE
+        let is_clear = self.sheet.is_some_and(|sheet| sheet.is_clear());
+        self.metallic < 1.0 && self.transmission > NEGLIGIBLE && !is_clear
     }
 
     /// The albedo where nothing but Lambert's lobe is left.
@@ -142,7 +159,8 @@ impl Principled {
             && self.sheen.is_none()
             && self.metallic <= NEGLIGIBLE
             && self.transmission <= NEGLIGIBLE
-            && self.diffuse_roughness < LEAST_ROUGHNESS;
+            && self.diffuse_roughness < LEAST_ROUGHNESS
+            && self.translucency == 0.0;
         (bare && self.specular.is_none()).then_some(self.base_color)
     }
 
@@ -178,24 +196,30 @@ impl Principled {
             set = set | self.rough.reflection_class();
         }
         if glass > NEGLIGIBLE {
-            set = set | self.glass.classes();
+            set = set | self.sheet.map_or_else(|| self.glass.classes(), |sheet| sheet.classes());
         }
         if base > NEGLIGIBLE {
             if let Some(layer) = self.specular {
                 set = set | layer.rough.reflection_class();
             }
             if !self.base_color.is_black() {
-                set = set | LobeSet::DIFFUSE;
+                set = set | self.diffuse_classes();
             }
         }
         set
+    }
+
+    /// Classes of the diffuse base.
+    fn diffuse_classes(&self) -> LobeSet {
+        let reflected = if self.translucency < 1.0 { LobeSet::DIFFUSE } else { LobeSet::EMPTY };
+        if self.translucency > 0.0 { reflected | LobeSet::TRANSLUCENT } else { reflected }
     }
 
     /// Indices of refraction the energy tables will be asked for.
     pub(super) fn etas(&self) -> impl Iterator<Item = f32> {
         let coat = self.coat.as_ref().and_then(|coat| coat.layer).map(|layer| layer.eta);
         let specular = self.specular.map(|layer| layer.eta);
-        let glass = (self.transmission > NEGLIGIBLE).then_some(self.glass.ior);
+        let glass = (self.transmission > NEGLIGIBLE && self.sheet.is_none()).then_some(self.glass.ior);
         [coat, specular, glass].into_iter().flatten()
     }
 
@@ -212,7 +236,8 @@ impl Principled {
             tint += self.metal.f0 * metal;
         }
         if self.glass.rough.reflection_class() == LobeSet::ROUGH {
-            tint += self.glass.f0 * glass;
+            let transmitting = self.sheet.map_or(self.glass.f0, |sheet| sheet.reflectance());
+            tint += transmitting * glass;
         }
         if self.rough.reflection_class() == LobeSet::ROUGH {
             tint += self.specular.map_or(Rgb::BLACK, |layer| layer.f0 * base);
@@ -220,7 +245,7 @@ impl Principled {
         tint
     }
 
-    /// Adds the lobes, and returns what part of the emission leaves towards the viewer at `cos` from the normals.
+    /// Adds the lobes; returns what else leaves towards the viewer at `cos` from the normals.
     pub(super) fn push(
         &self,
         lobes: &mut LobeList,
@@ -228,17 +253,21 @@ impl Principled {
         entering: bool,
         cos: Layers<f32>,
         slot: u8,
-    ) -> Rgb {
+    ) -> Unscattered {
         let below_sheen = self.push_sheen(lobes, weight, cos.sheen, slot + SHEEN);
         let below_coat = self.push_coat(lobes, weight * below_sheen, cos.coat, slot + COAT) * below_sheen;
         let cos = cos.base;
         let [metal, glass, base] = self.shares();
         let weight = weight * below_coat;
+        let mut unscattered = Unscattered { emission: weight * self.emission, straight: Rgb::BLACK };
         if metal > NEGLIGIBLE {
             self.metal.push(lobes, weight * metal, self.rough, cos, slot + METAL);
         }
         if glass > NEGLIGIBLE {
-            self.glass.push(lobes, weight * glass, entering, cos, slot + 2);
+            match &self.sheet {
+                Some(sheet) => unscattered.straight = sheet.push(lobes, weight * glass, cos, slot + 2),
+                None => self.glass.push(lobes, weight * glass, entering, cos, slot + 2),
+            }
         }
         if base > NEGLIGIBLE {
             let through = match self.specular {
@@ -246,11 +275,21 @@ impl Principled {
                 None => 1.0,
             };
             if !self.base_color.is_black() {
-                let albedo = weight * self.base_color * (base * through);
-                lobes.push(Lobe::diffuse(albedo, self.base_color, self.diffuse_roughness, cos, slot + 5));
+                self.push_diffuse(lobes, weight * self.base_color * (base * through), cos, slot);
             }
         }
-        below_coat
+        unscattered
+    }
+
+    /// Adds the diffuse base. What of it leaves on the other side does so evenly, however rough it is.
+    fn push_diffuse(&self, lobes: &mut LobeList, albedo: Rgb, cos: f32, slot: u8) {
+        if self.translucency < 1.0 {
+            let reflected = albedo * (1.0 - self.translucency);
+            lobes.push(Lobe::diffuse(reflected, self.base_color, self.diffuse_roughness, cos, slot + 5));
+        }
+        if self.translucency > 0.0 {
+            lobes.push(Lobe::translucent(albedo * self.translucency, slot + TRANSLUCENT));
+        }
     }
 
     /// Adds the sheen, and returns what part of the light passes it.

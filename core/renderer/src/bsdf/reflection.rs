@@ -53,19 +53,12 @@ impl Roughness {
     }
 }
 
-/// Reflection of `color`, the same at every angle.
-pub(super) fn push_constant(
-    lobes: &mut LobeList,
-    weight: Rgb,
-    color: Rgb,
-    rough: Roughness,
-    cos: f32,
-    slot: u8,
-) {
+/// Reflection of `weight`, the same at every angle; `fss` is what each bounce between microfacets leaves.
+pub(super) fn constant(weight: Rgb, fss: Rgb, rough: Roughness, cos: f32, slot: u8) -> Lobe {
     let table = energy_table::reflection(rough.roughness, cos);
-    let gain = rough.gain(table.total, table.mean, color);
-    let weight = weight * color * gain;
-    lobes.push(Lobe {
+    let gain = rough.gain(table.total, table.mean, fss);
+    let weight = weight * gain;
+    Lobe {
         shape: Shape::Reflection { alpha: rough.alpha },
         fresnel: Fresnel::Full,
         weight,
@@ -74,7 +67,7 @@ pub(super) fn push_constant(
         class: rough.reflection_class(),
         slot,
         normal: 0,
-    });
+    }
 }
 
 /// Reflection of a metal, see [`fresnel::metal`].
