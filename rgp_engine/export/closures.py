@@ -36,9 +36,7 @@ _PRINCIPLED = (
     ("Sheen Tint", True),
 )
 # Inputs that are left out, and do nothing at 0.
-_LEFT_OUT = (
-    "Thin Film Thickness",
-)
+_LEFT_OUT = ("Thin Film Thickness",)
 
 _SUBSURFACE = "subsurface scattering is approximated: light leaves where it enters, as from Diffuse"
 

@@ -200,7 +200,6 @@ MATERIALS: dict[str, Surface] = {
     "mirror": shader("BsdfGlossy", Color=GOLD, Roughness=0.0),
     "glass": shader("BsdfGlass", Color=TINT, Roughness=0.0, IOR=1.45),
     "glass_rough": shader("BsdfGlass", Color=TINT, Roughness=0.4, IOR=1.45),
-    "ggx_glass": shader("BsdfGlass", "GGX", Color=TINT, Roughness=0.6, IOR=1.45),
     "refraction": shader("BsdfRefraction", Color=TINT, Roughness=0.0, IOR=1.45),
     "refraction_rough": shader("BsdfRefraction", "GGX", Color=TINT, Roughness=0.4, IOR=1.45),
     "transparent": shader("BsdfTransparent", Color=(0.8, 0.5, 0.3)),

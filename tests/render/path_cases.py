@@ -214,6 +214,26 @@ def _measured(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
     return made.outputs[0]
 
 
+ROUGH_GLASS = shader("BsdfGlass", "GGX", Color=TINT, Roughness=0.6, IOR=1.45)
+
+
+def _rough_glass_in_a_world() -> None:
+    cases.add_ball(ROUGH_GLASS)
+    cases.add_light("world")
+
+
+def _rough_glass_below_a_lamp() -> None:
+    cases.add_ball(ROUGH_GLASS)
+    cases.add_lamp(cases.MATERIAL_LAMP)
+
+
+def _rough_glass_below_an_emitter() -> None:
+    """Cycles finds it by chance: where it samples lights, it refracts to where no facet can."""
+    cases.add_ball(ROUGH_GLASS)
+    panel = add_polygons("Panel", [_pane(2.0, 2.5)], shader("Emission", Color=GOLD, Strength=2.0))
+    panel.active_material.cycles.emission_sampling = "NONE"
+
+
 def _below_a_luminaire() -> None:
     """It is turned and stretched, and with it where it shines."""
     cases.add_ball(shader("BsdfDiffuse", Color=BLUE))
@@ -240,6 +260,9 @@ PATHS: dict[str, Callable[[], None]] = {
     "translucent_screen": _before_a_screen,
     "thin_glass": _behind_a_pane,
     "total_inner_reflection": _block_of_glass,
+    "rough_glass_world": _rough_glass_in_a_world,
+    "rough_glass_lamp": _rough_glass_below_a_lamp,
+    "rough_glass_emitter": _rough_glass_below_an_emitter,
     "colored_glass": _through_colored_glass,
     "colored_glass_ball": _ball_of_colored_glass,
     "absorbing_haze": _in_clear_haze,

@@ -2,8 +2,8 @@
 
 use rgp_renderer::scene::record::Input;
 use rgp_renderer::shader::{
-    Axis, BlendMode, CellHash, Extension, Feature, Fractal, GradientShape, Interpolation, MathFunction, Metric,
-    NormalSpace, Projection, Quantity, VectorFunction, VoronoiOutput, WaveDirection, WaveProfile,
+    Axis, BlendMode, CellHash, Extension, Feature, Fractal, GradientShape, Interpolation, MathFunction,
+    Metric, NormalSpace, Projection, Quantity, VectorFunction, VoronoiOutput, WaveDirection, WaveProfile,
 };
 
 use crate::records::Kind::{

@@ -189,9 +189,7 @@ impl Bsdf<'_> {
             Shape::Reflection { .. }
             | Shape::Anisotropic(_)
             | Shape::Mirrored { .. }
-            | Shape::Transmission { .. } => {
-                own().mirroring_above(self.wo)
-            }
+            | Shape::Transmission { .. } => own().mirroring_above(self.wo),
         }
     }
 
