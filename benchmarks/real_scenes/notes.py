@@ -9,10 +9,7 @@ NOTES = {
         "Nothing differs at a glance. In the pictures of Cycles the caustics of the knot of metal are sparks; "
         "ours come from the caustic map."
     ),
-    "bevy_gi_hall": (
-        "Ours is 4 % brighter, and says why: the walls' Principled BSDF has the distribution GGX, which loses light at "
-        "every bounce, and is rendered as Multiscatter GGX."
-    ),
+    "bevy_gi_hall": "Nothing differs but noise. The walls' Principled BSDF has the distribution GGX, which loses light.",
     "cornell_original": (
         "Nothing differs at a glance. Both have sparks round the lamp: it is a closed box of emissive faces right "
         "below the ceiling, and what shines upwards lights the ceiling from 1 cm."

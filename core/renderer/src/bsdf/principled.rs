@@ -30,6 +30,7 @@ const SPECULAR: u8 = 4;
 pub(super) const fn is_anisotropic(slot: u8) -> bool {
     matches!(slot, METAL | SPECULAR)
 }
+
 /// The slot of what of the diffuse base leaves on the other side.
 const TRANSLUCENT: u8 = 7;
 

@@ -132,8 +132,10 @@ impl<'a, 'g, E: Estimator> Block<'a, 'g, E> {
             if px >= camera.region[2] || py >= camera.region[3] {
                 continue;
             }
-            // In an order of its own: some samples have no gather rays, or always the same ones.
-            let u = shuffled_point(self.sample, key as u32);
+            let u = match &g.camera_set {
+                Some(set) => set.point(self.sample as usize, key as u32),
+                None => shuffled_point(self.sample, key as u32),
+            };
             let offset = [u[0] - 0.5, u[1] - 0.5];
             self.samples[lane] = PixelSample { offset, taken: true, ..Default::default() };
             let offset = DVec2::new(f64::from(offset[0]), f64::from(offset[1]));

@@ -64,6 +64,10 @@ pub use stop::Stop;
 /// One block in so many is clocked, to tell what each effect costs.
 const CLOCKED: u64 = 64;
 
+/// Gather rays of each camera sample from which on these come in one order, the same in all pixels. They are then spread over
+/// all directions. Of fewer, each direction would belong to its own part of every pixel, and many parts to none.
+const RAYS_IN_ORDER: u32 = 4;
+
 /// What every gather ray needs to know.
 pub struct Gatherer<'a, E> {
     lit: &'a LitScene<'a>,
@@ -78,6 +82,9 @@ pub struct Gatherer<'a, E> {
     sampling: GatherSampling,
     /// The lens that camera rays pass through, and where.
     lens: Option<&'a Lens>,
+    /// Camera samples in the order of the gather rays, so that the pixel filter weighs all strata of these alike; `None` where
+    /// they have an order of each pixel's own.
+    camera_set: Option<StratifiedSet>,
     gather_set: StratifiedSet,
     /// Of a pixel: light samples against gather rays.
     shares: Shares,
@@ -157,6 +164,7 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
     ) -> Self {
         let gather = &settings.gather;
         let seed = settings.render.seed;
+        let set = |count: u32, salt: u64| StratifiedSet::new(count, hash(u64::from(seed), salt) as u32);
         let plain = lit.materials.iter().map(|material| {
             let albedo = material.constant_lambert().filter(|_| material.emission().is_black());
             albedo.map(|albedo| albedo * std::f32::consts::FRAC_1_PI)
@@ -178,7 +186,9 @@ impl<'a, E: Estimator> Gatherer<'a, E> {
             max_depth: gather.max_depth.max(E::LEAST_DEPTH),
             sampling: gather.sampling,
             lens,
-            gather_set: StratifiedSet::new(gather.rays, hash(u64::from(seed), 3) as u32),
+            camera_set: (gather.rays / gather.camera_samples >= RAYS_IN_ORDER)
+                .then(|| set(gather.camera_samples, 1)),
+            gather_set: set(gather.rays, 3),
             shares: Shares {
                 light: (gather.camera_samples * gather.light_samples) as f32,
                 bsdf: gather.rays as f32,
