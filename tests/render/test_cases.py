@@ -22,8 +22,8 @@ SEEDS = (0,)
 """One picture has no noise to speak of in its mean."""
 SPARKLING = ("material/coat_over_bumps/lamp", "material/bumped_glossy/lamp", "material/anisotropic_uv/lamp")
 SPARKLING_SETTINGS = {**SETTINGS, "gather.rays": 256, "gather.camera_samples": 256}
-"""The lamp in bumped and in brushed metal: the ball's mean differs by 0.4 to 1 % from seed to seed at 64 samples, here by
-less than half of it."""
+"""The lamp in bumped and in brushed metal: the ball's mean differs by 0.4 to 1 % from seed to seed at 64 samples, here
+by less than half of it."""
 CAUSTIC_SETTINGS = {**SETTINGS, "gather.rays": 512, "gather.camera_samples": 256}
 CAUSTIC_SEEDS = tuple(range(8))
 """A lamp behind a ball of glass is found by few rays, and rough glass scatters them: there the
