@@ -9,7 +9,7 @@ NOTES = {
         "Nothing differs at a glance. In the pictures of Cycles the caustics of the knot of metal are sparks; "
         "ours come from the caustic map."
     ),
-    "bevy_gi_hall": "Nothing differs at a glance. The walls' Principled BSDF has the distribution GGX, which loses light.",
+    "bevy_gi_hall": "Nothing differs at a glance. The walls have the distribution GGX, which loses light.",
     "cornell_original": (
         "Nothing differs at a glance. Both have sparks round the lamp: it is a closed box of emissive faces right "
         "below the ceiling, and what shines upwards lights the ceiling from 1 cm."
