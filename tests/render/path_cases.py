@@ -101,7 +101,7 @@ def _ball_before_a_mirror(surface: Surface) -> Callable[[], None]:
     return add
 
 
-def _below_a_pane(surface: Surface) -> Callable[[], None]:
+def below_a_pane(surface: Surface) -> Callable[[], None]:
     """A pane between the lamp and a diffuse ball."""
 
     def add() -> None:
@@ -254,9 +254,9 @@ PATHS: dict[str, Callable[[], None]] = {
     "coat_in_mirror": _ball_before_a_mirror(
         shader("BsdfPrincipled", Base_Color=BLUE, Roughness=0.6, Coat_Weight=1.0, Coat_Roughness=0.0)
     ),
-    "tinted_shadow": _below_a_pane(shader("BsdfTransparent", Color=(0.9, 0.3, 0.1))),
-    "alpha_shadow": _below_a_pane(shader("BsdfPrincipled", Base_Color=RED, Alpha=0.4)),
-    "perforated_shadow": _below_a_pane(perforated()),
+    "tinted_shadow": below_a_pane(shader("BsdfTransparent", Color=(0.9, 0.3, 0.1))),
+    "alpha_shadow": below_a_pane(shader("BsdfPrincipled", Base_Color=RED, Alpha=0.4)),
+    "perforated_shadow": below_a_pane(perforated()),
     "translucent_screen": _before_a_screen,
     "thin_glass": _behind_a_pane,
     "total_inner_reflection": _block_of_glass,

@@ -10,7 +10,6 @@ from tests.render.agreement.exclusions import EXCLUSIONS
 from tests.render.agreement.features import features
 from tests.render.agreement.measure import Agreement, Renders, measure
 from tests.render.agreement.page import TITLES, write
-from tests.render.thin_wall_cases import THIN_WALLS
 
 NOISE = 0.06
 COUNT = 4
@@ -56,8 +55,7 @@ def test_the_page_tells_what_differs_and_why(tmp_path: Path) -> None:
 
 
 def test_reasons_are_given_for_what_is_compared() -> None:
-    reasons = {name for name in EXCLUSIONS if THIN_WALLS or not name.startswith("thin_wall/")}
-    assert reasons <= {feature.name for feature in features()}
+    assert set(EXCLUSIONS) <= {feature.name for feature in features()}
 
 
 def test_every_group_has_a_title() -> None:

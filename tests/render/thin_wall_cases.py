@@ -9,7 +9,7 @@ import bpy
 from scenes import common
 from tests.render import cases
 from tests.render.cases import BLUE, TINT, Surface, shader
-from tests.render.path_cases import add_polygons
+from tests.render.path_cases import add_polygons, below_a_pane
 
 _LEAF = (0.5, 0.7, 0.2)
 
@@ -54,18 +54,6 @@ def _pane(surface: Surface, light: str) -> Callable[[], None]:
     return add
 
 
-def _below_a_pane(surface: Surface) -> Callable[[], None]:
-    """A pane between the lamp and a diffuse ball."""
-
-    def add() -> None:
-        add_polygons(
-            "Pane", [[(-1.5, -1.5, 2.5), (1.5, -1.5, 2.5), (1.5, 1.5, 2.5), (-1.5, 1.5, 2.5)]], surface
-        )
-        _ball(shader("BsdfDiffuse", Color=BLUE), "lamp")()
-
-    return add
-
-
 _SCENES: dict[str, Callable[[], None]] = {
     **{
         f"{name}_{light}": make(_glass(roughness), light)
@@ -78,12 +66,12 @@ _SCENES: dict[str, Callable[[], None]] = {
         for light in cases.LIGHTS
     },
     "tinted_pane": _pane(_glass(0.0, (0.9, 0.4, 0.2)), "lamp"),
-    "tinted_shadow": _below_a_pane(_glass(0.0, (0.9, 0.3, 0.1))),
-    "rough_shadow": _below_a_pane(_glass(0.5)),
+    "tinted_shadow": below_a_pane(_glass(0.0, (0.9, 0.3, 0.1))),
+    "rough_shadow": below_a_pane(_glass(0.5)),
     "half_glass": _ball(_glass(0.3, BLUE, Metallic=0.3, Coat_Weight=1.0), "world"),
     "leaf_world": _ball(_leaf(), "world"),
     "leaf_lamp": _ball(_leaf(), "lamp"),
-    "leaf_pane": _below_a_pane(_leaf(Subsurface_Anisotropy=0.6)),
+    "leaf_pane": below_a_pane(_leaf(Subsurface_Anisotropy=0.6)),
     "rough_leaf": _ball(_leaf(Diffuse_Roughness=1.0), "lamp"),
 }
 THIN_WALLS = _SCENES if bpy.app.version >= (5, 2) else {}

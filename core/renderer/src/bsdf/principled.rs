@@ -233,14 +233,12 @@ impl Principled {
             tint += layer.f0 * coat.weight;
         }
         let [metal, glass, base] = self.shares();
-        if self.rough.reflection_class() == LobeSet::ROUGH {
-            tint += self.metal.f0 * metal;
-        }
         if self.glass.rough.reflection_class() == LobeSet::ROUGH {
             let transmitting = self.sheet.map_or(self.glass.f0, |sheet| sheet.reflectance());
             tint += transmitting * glass;
         }
         if self.rough.reflection_class() == LobeSet::ROUGH {
+            tint += self.metal.f0 * metal;
             tint += self.specular.map_or(Rgb::BLACK, |layer| layer.f0 * base);
         }
         tint
